@@ -1,0 +1,14 @@
+//! Photosurfaces: the apparent shape of fast-moving objects as real geometry.
+
+mod light_cone;
+mod mesh;
+mod spacetime;
+
+pub use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec4};
+
+pub use light_cone::PhotosurfaceMap;
+pub use mesh::{
+    AlphaMode, Appearance, Filter, Image, Material, Mesh, MeshError, Model, Part, Sampler, Shape,
+    Texture, Wrap,
+};
+pub use spacetime::{Event, Lorentz, MAX_RAPIDITY, Velocity, VelocityError, WorldLine};

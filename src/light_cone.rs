@@ -1,0 +1,257 @@
+//! Where a point at rest is seen by a moving observer: the photosurface map.
+//!
+//! Everything here is written in two frames. In the *rest frame* of the object, `offset` is a point
+//! minus the observer's position at the moment of observation. The *observer's frame* has the
+//! observer at its origin and axes that are related to those of the rest frame by a pure boost.
+//!
+//! In the light-cone coordinates `u = r - d_par`, `w = r + d_par` along the direction of motion the map
+//! only multiplies, by `exp(-eta)` and `exp(eta)`; all results are written in terms of them because
+//! there nothing cancels near light speed.
+//!
+//! Sources: Rau, Weiskopf, Ruder, *Special Relativity in Virtual Reality* (1998), sections 3.1 and 4.1
+//! (their Eq. (7) with the opposite sign of beta); Terrell, Phys. Rev. 116 (1959), 1041.
+
+use glam::{DMat3, DVec3};
+
+use crate::spacetime::{Velocity, unit};
+
+/// The map from points at rest to the places where one moving observer sees them.
+///
+/// Homogeneous of degree 1, one-to-one, linear along every ray from the observer, smooth except at the
+/// observer itself.
+///
+/// # Example
+///
+/// ```
+/// use photosurface::{DVec3, PhotosurfaceMap, Velocity};
+///
+/// // A point 3 ahead of an observer who moves towards it at 0.8 c is seen 9 ahead.
+/// let observer = Velocity::from_beta(0.8, DVec3::X)?;
+/// let seen = PhotosurfaceMap::new(&observer).seen_position(DVec3::new(3.0, 0.0, 0.0));
+/// assert!((seen - DVec3::new(9.0, 0.0, 0.0)).length() < 1e-14);
+/// # Ok::<(), photosurface::VelocityError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhotosurfaceMap {
+    /// Direction in which the observer moves through the rest frame.
+    direction: DVec3,
+    /// `exp(eta)`
+    stretch: f64,
+    /// `exp(-eta)`
+    squeeze: f64,
+    gamma: f64,
+    gamma_beta: f64,
+}
+
+/// An offset in light-cone coordinates along the direction of motion.
+struct LightCone {
+    /// The part across the direction of motion.
+    across: DVec3,
+    /// `u = r - d_par >= 0`
+    u: f64,
+    /// `w = r + d_par >= 0`
+    w: f64,
+}
+
+impl PhotosurfaceMap {
+    /// The map for an observer who moves with velocity `observer` through the rest frame.
+    pub fn new(observer: &Velocity) -> Self {
+        Self {
+            direction: observer.direction(),
+            stretch: observer.rapidity().exp(),
+            squeeze: (-observer.rapidity()).exp(),
+            gamma: observer.gamma(),
+            gamma_beta: observer.gamma_beta(),
+        }
+    }
+
+    /// The place, in the observer's frame, where a point is seen: that of the emission event.
+    ///
+    /// # Derivation
+    ///
+    /// Light seen now left the point a time `r = |d|` ago, at the event `(-r, d)`. In the light-cone
+    /// coordinates `(r - d_par, r + d_par)` the boost only multiplies, by `exp(-eta)` and `exp(eta)`.
+    ///
+    /// # Accuracy
+    ///
+    /// A few units in the last place of `|result|` where the direction is along an axis, and as good as
+    /// the direction's own rounding allows elsewhere (`tests/accuracy.rs`). Continuous everywhere; the
+    /// observer's own place maps to zero.
+    ///
+    /// # Reference
+    ///
+    /// Rau, Weiskopf, Ruder (1998), section 3.1.
+    pub fn seen_position(&self, offset_rest: DVec3) -> DVec3 {
+        self.map(offset_rest, self.squeeze, self.stretch)
+    }
+
+    /// The point at rest, relative to the observer, that is seen at `seen`: the inverse of
+    /// [`PhotosurfaceMap::seen_position`].
+    pub fn rest_offset(&self, seen: DVec3) -> DVec3 {
+        self.map(seen, self.stretch, self.squeeze)
+    }
+
+    fn map(&self, offset: DVec3, factor_u: f64, factor_w: f64) -> DVec3 {
+        let LightCone { across, u, w } = self.light_cone(offset);
+        across + self.direction * (0.5 * (factor_w * w - factor_u * u))
+    }
+
+    /// The time of the emission event in the observer's frame, minus the distance at which the point
+    /// is seen. Zero at the observer, else negative.
+    pub fn emission_time(&self, offset_rest: DVec3) -> f64 {
+        let LightCone { u, w, .. } = self.light_cone(offset_rest);
+        -0.5 * (self.stretch * w + self.squeeze * u)
+    }
+
+    /// Frequency seen over frequency emitted, `D = gamma (1 + beta cos)`.
+    ///
+    /// It is also `|seen_position| / |offset|` and the determinant of [`PhotosurfaceMap::jacobian`]. At
+    /// the observer itself, where it depends on the direction, its mean over all directions: `gamma`.
+    pub fn doppler_factor(&self, offset_rest: DVec3) -> f64 {
+        let LightCone { u, w, .. } = self.light_cone(offset_rest);
+        if u + w == 0.0 {
+            return self.gamma;
+        }
+        (self.stretch * w + self.squeeze * u) / (w + u)
+    }
+
+    /// The derivative of [`PhotosurfaceMap::seen_position`]: `I + n a^T`,
+    /// `a = (gamma - 1) n + gamma beta d / r`.
+    ///
+    /// At the observer itself, where there is none, that of the boost alone (`d / r` taken as 0).
+    pub fn jacobian(&self, offset_rest: DVec3) -> DMat3 {
+        let n = self.direction;
+        let toward = unit(offset_rest).unwrap_or(DVec3::ZERO);
+        // gamma - 1 without cancellation at low speed.
+        let gamma_minus_one = self.gamma_beta * self.gamma_beta / (self.gamma + 1.0);
+        let a = n * gamma_minus_one + toward * self.gamma_beta;
+        DMat3::from_cols(DVec3::X + n * a.x, DVec3::Y + n * a.y, DVec3::Z + n * a.z)
+    }
+
+    /// The unit normal of the photosurface where the surface at rest has the normal `normal_rest`.
+    ///
+    /// # Derivation
+    ///
+    /// Normals go with the inverse transpose of the Jacobian, `N ~ n_rest - a (n.n_rest) / D`. Split
+    /// along and across the motion and multiplied by `D` this is
+    /// `D n_across + (n.n_rest) (n - gamma beta d_across / r)`: two terms, neither of which cancels in
+    /// itself.
+    ///
+    /// A zero normal, or one so small that it vanishes, stays zero.
+    pub fn seen_normal(&self, offset_rest: DVec3, normal_rest: DVec3) -> DVec3 {
+        let n = self.direction;
+        let LightCone { across, u, w } = self.light_cone(offset_rest);
+        let r = 0.5 * (w + u);
+        let toward_across = if r > 0.0 { across / r } else { DVec3::ZERO };
+        let normal_par = n.dot(normal_rest);
+        let normal_across = normal_rest - n * normal_par;
+        let normal = normal_across * self.doppler_factor(offset_rest)
+            + (n - toward_across * self.gamma_beta) * normal_par;
+        unit(normal).unwrap_or(DVec3::ZERO)
+    }
+
+    /// The unit tangent of the photosurface where the surface at rest has the tangent `tangent_rest`:
+    /// tangents go with the Jacobian. A zero tangent stays zero.
+    pub fn seen_tangent(&self, offset_rest: DVec3, tangent_rest: DVec3) -> DVec3 {
+        let n = self.direction;
+        let LightCone { across, u, w } = self.light_cone(offset_rest);
+        let r = 0.5 * (w + u);
+        let toward_across = if r > 0.0 { across / r } else { DVec3::ZERO };
+        let tangent_par = n.dot(tangent_rest);
+        let tangent_across = tangent_rest - n * tangent_par;
+        let seen_par = self.doppler_factor(offset_rest) * tangent_par
+            + self.gamma_beta * toward_across.dot(tangent_across);
+        unit(tangent_across + n * seen_par).unwrap_or(DVec3::ZERO)
+    }
+
+    /// Splits an offset into its part across the motion and its light-cone coordinates along it.
+    ///
+    /// The smaller of `u` and `w` comes from `u w = |across|^2`: as a difference it would be lost.
+    fn light_cone(&self, offset: DVec3) -> LightCone {
+        let n = self.direction;
+        // Outside this range the squares below would lose digits; powers of two lose none.
+        let largest = offset.abs().max_element();
+        let scale = if largest > 1e140 {
+            2f64.powi(-600)
+        } else if largest < 1e-140 {
+            2f64.powi(500)
+        } else {
+            1.0
+        };
+        let d = offset * scale;
+
+        let parallel = n.dot(d);
+        let sideways = n.cross(d);
+        let across = sideways.cross(n);
+        let across_squared = sideways.length_squared();
+        let r = parallel.hypot(across_squared.sqrt());
+        let larger = r + parallel.abs();
+        let smaller = if larger > 0.0 {
+            across_squared / larger
+        } else {
+            0.0
+        };
+        let (u, w) = if parallel > 0.0 {
+            (smaller, larger)
+        } else {
+            (larger, smaller)
+        };
+        LightCone {
+            across: across / scale,
+            u: u / scale,
+            w: w / scale,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn observer(rapidity: f64, direction: DVec3) -> PhotosurfaceMap {
+        PhotosurfaceMap::new(&Velocity::from_rapidity(rapidity, direction).unwrap())
+    }
+
+    #[test]
+    fn an_observer_at_rest_sees_things_where_they_are() {
+        let map = observer(0.0, DVec3::new(1.0, 2.0, -3.0));
+        let d = DVec3::new(0.3, -4.0, 5.0);
+        assert!((map.seen_position(d) - d).length() < 4e-16 * d.length());
+        assert!((map.seen_normal(d, DVec3::Y) - DVec3::Y).length() < 4e-16);
+        assert_eq!(map.doppler_factor(d), 1.0);
+    }
+
+    #[test]
+    fn the_place_of_the_observer_is_a_fixed_point() {
+        let map = observer(3.0, DVec3::X);
+        assert_eq!(map.seen_position(DVec3::ZERO), DVec3::ZERO);
+        assert_eq!(map.emission_time(DVec3::ZERO), 0.0);
+        assert_eq!(map.doppler_factor(DVec3::ZERO), 3f64.cosh());
+        assert!(map.jacobian(DVec3::ZERO).is_finite());
+        assert!((map.seen_normal(DVec3::ZERO, DVec3::Y).length() - 1.0).abs() < 4e-16);
+    }
+
+    #[test]
+    fn collinear_points_are_stretched_by_the_doppler_factor() {
+        let map = observer(2.0, DVec3::Z);
+        let ahead = map.seen_position(DVec3::new(0.0, 0.0, 5.0));
+        let behind = map.seen_position(DVec3::new(0.0, 0.0, -5.0));
+        assert_eq!(ahead, DVec3::new(0.0, 0.0, 5.0 * 2f64.exp()));
+        assert_eq!(behind, DVec3::new(0.0, 0.0, -5.0 * (-2f64).exp()));
+    }
+
+    #[test]
+    fn tiny_and_huge_offsets_scale_like_any_other() {
+        let map = observer(1.5, DVec3::new(1.0, 1.0, 0.5));
+        let d = DVec3::new(0.25, -0.5, 0.125);
+        let seen = map.seen_position(d);
+        for exponent in [-1000, -700, 500, 900] {
+            let scale = 2f64.powi(exponent);
+            let error = map.seen_position(d * scale) / scale - seen;
+            assert!(
+                error.length() <= 4e-16 * seen.length(),
+                "2^{exponent}: {error}"
+            );
+        }
+    }
+}

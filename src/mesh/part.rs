@@ -1,0 +1,69 @@
+//! What a file or a shape gives: named meshes with their materials.
+
+use std::sync::Arc;
+
+use super::{Material, Mesh, MeshError};
+
+/// A mesh with its name and material; becomes one photosurface for every step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// As the source names it; empty where there is only one and it needs no name.
+    pub name: String,
+    /// The geometry, always with normals.
+    mesh: Mesh,
+    /// What it is made of; shared by all parts made of the same.
+    pub material: Option<Arc<Material>>,
+}
+
+impl Part {
+    /// A part; a mesh without normals gets those of its flat triangles.
+    ///
+    /// # Errors
+    ///
+    /// As [`Mesh::with_flat_normals`].
+    pub fn new(
+        name: impl Into<String>,
+        mesh: Mesh,
+        material: Option<Arc<Material>>,
+    ) -> Result<Self, MeshError> {
+        let mesh = match mesh.normals() {
+            Some(_) => mesh,
+            None => mesh.with_flat_normals()?,
+        };
+        Ok(Self {
+            name: name.into(),
+            mesh,
+            material,
+        })
+    }
+
+    /// The geometry.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+}
+
+/// Everything one source gives, at rest, in the coordinates of the object.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Model {
+    /// In the order of the source.
+    pub parts: Vec<Part>,
+}
+
+impl Model {
+    /// How many triangles all parts have together.
+    pub fn triangle_count(&self) -> usize {
+        self.parts
+            .iter()
+            .map(|part| part.mesh.triangles().len())
+            .sum()
+    }
+
+    /// How many vertices all parts have together.
+    pub fn vertex_count(&self) -> usize {
+        self.parts
+            .iter()
+            .map(|part| part.mesh.positions().len())
+            .sum()
+    }
+}

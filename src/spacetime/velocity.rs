@@ -1,0 +1,250 @@
+//! A velocity below that of light, held so that near light speed no digit is lost.
+
+use glam::DVec3;
+use thiserror::Error;
+
+use super::unit;
+
+/// The largest rapidity a [`Velocity`] may have: `1 - beta` is then about `2e-304`.
+///
+/// Two velocities of this rapidity may still be opposite: their relative rapidity of 700 keeps
+/// `gamma` within `f64`.
+pub const MAX_RAPIDITY: f64 = 350.0;
+
+/// A velocity below that of light: rapidity and direction.
+///
+/// Near light speed `beta` runs out of digits (`1 - 1e-20` is not a number); the rapidity
+/// `eta = atanh(beta)` does not. All constructors check; a value of this type is always usable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Velocity {
+    rapidity: f64,
+    direction: DVec3,
+}
+
+/// Why numbers do not make a [`Velocity`].
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum VelocityError {
+    /// `beta` outside `0 <= beta < 1`.
+    #[error("beta is {0}, expected 0 <= beta < 1 (below the speed of light)")]
+    Beta(f64),
+    /// `1 - beta` outside `0 < 1 - beta <= 1`.
+    #[error("one_minus_beta is {0}, expected 0 < one_minus_beta <= 1 (below the speed of light)")]
+    OneMinusBeta(f64),
+    /// `gamma < 1`, infinite or NaN.
+    #[error("gamma is {0}, expected a finite number >= 1")]
+    Gamma(f64),
+    /// Rapidity negative, infinite or NaN.
+    #[error("rapidity is {0}, expected a finite number >= 0")]
+    Rapidity(f64),
+    /// Faster than [`MAX_RAPIDITY`].
+    #[error("the rapidity would be {0}, expected at most {MAX_RAPIDITY} (1 - beta = 2e-304)")]
+    TooFast(f64),
+    /// A direction without direction.
+    #[error("the direction is {0}, expected a finite vector that is not zero")]
+    Direction(DVec3),
+}
+
+impl Velocity {
+    /// At rest.
+    pub const ZERO: Self = Self {
+        rapidity: 0.0,
+        direction: DVec3::NEG_Z,
+    };
+
+    /// From the speed `0 <= beta < 1`; `direction` need not be of unit length.
+    ///
+    /// # Errors
+    ///
+    /// `beta` outside its range, or no direction.
+    pub fn from_beta(beta: f64, direction: DVec3) -> Result<Self, VelocityError> {
+        if !(0.0..1.0).contains(&beta) {
+            return Err(VelocityError::Beta(beta));
+        }
+        Self::from_rapidity(beta.atanh(), direction)
+    }
+
+    /// From `0 < 1 - beta <= 1`, for speeds that `beta` cannot say.
+    ///
+    /// # Errors
+    ///
+    /// `one_minus_beta` outside its range or below that of [`MAX_RAPIDITY`], or no direction.
+    pub fn from_one_minus_beta(
+        one_minus_beta: f64,
+        direction: DVec3,
+    ) -> Result<Self, VelocityError> {
+        if !(one_minus_beta > 0.0 && one_minus_beta <= 1.0) {
+            return Err(VelocityError::OneMinusBeta(one_minus_beta));
+        }
+        // atanh(1 - x) = log1p(2 (1 - x) / x) / 2; the quotient overflows for subnormal x only,
+        // which is too fast anyway.
+        let rapidity = 0.5 * (2.0 * (1.0 - one_minus_beta) / one_minus_beta).ln_1p();
+        Self::from_rapidity(rapidity, direction)
+    }
+
+    /// From the Lorentz factor `gamma >= 1`.
+    ///
+    /// # Errors
+    ///
+    /// `gamma` outside its range or above that of [`MAX_RAPIDITY`], or no direction.
+    pub fn from_gamma(gamma: f64, direction: DVec3) -> Result<Self, VelocityError> {
+        if !(gamma >= 1.0 && gamma.is_finite()) {
+            return Err(VelocityError::Gamma(gamma));
+        }
+        // acosh(gamma) without the cancellation at gamma = 1: gamma - 1 = 2 sinh^2(eta / 2).
+        let rapidity = 2.0 * (0.5 * (gamma - 1.0)).sqrt().asinh();
+        Self::from_rapidity(rapidity, direction)
+    }
+
+    /// From the rapidity `eta = atanh(beta) >= 0`.
+    ///
+    /// # Errors
+    ///
+    /// `rapidity` negative, not finite or above [`MAX_RAPIDITY`], or no direction.
+    pub fn from_rapidity(rapidity: f64, direction: DVec3) -> Result<Self, VelocityError> {
+        if !(rapidity >= 0.0) {
+            return Err(VelocityError::Rapidity(rapidity));
+        }
+        if rapidity > MAX_RAPIDITY {
+            return Err(VelocityError::TooFast(rapidity));
+        }
+        let direction = unit(direction).ok_or(VelocityError::Direction(direction))?;
+        Ok(Self::from_parts(rapidity, direction))
+    }
+
+    /// From the velocity vector, `|vector| < 1`; the zero vector is rest.
+    ///
+    /// # Errors
+    ///
+    /// `|vector|` is not below 1, or a component is not finite.
+    pub fn from_vector(vector: DVec3) -> Result<Self, VelocityError> {
+        if vector == DVec3::ZERO {
+            return Ok(Self::ZERO);
+        }
+        let direction = unit(vector).ok_or(VelocityError::Direction(vector))?;
+        Self::from_beta(vector.dot(direction), direction)
+    }
+
+    /// For results of this module: `direction` is a unit vector, `rapidity` may reach twice
+    /// [`MAX_RAPIDITY`].
+    pub(super) fn from_parts(rapidity: f64, direction: DVec3) -> Self {
+        debug_assert!((direction.length() - 1.0).abs() < 1e-9);
+        debug_assert!((0.0..=2.0 * MAX_RAPIDITY * (1.0 + 1e-9)).contains(&rapidity));
+        Self {
+            rapidity,
+            direction,
+        }
+    }
+
+    /// The rapidity `eta = atanh(beta)`, not negative.
+    pub fn rapidity(&self) -> f64 {
+        self.rapidity
+    }
+
+    /// The direction of motion, a unit vector; at rest it has no meaning.
+    pub fn direction(&self) -> DVec3 {
+        self.direction
+    }
+
+    /// The speed; rounds to 1 from a rapidity of about 19.
+    pub fn beta(&self) -> f64 {
+        self.rapidity.tanh()
+    }
+
+    /// `1 - beta`, with all its digits.
+    pub fn one_minus_beta(&self) -> f64 {
+        (-self.rapidity).exp() / self.rapidity.cosh()
+    }
+
+    /// The Lorentz factor `cosh(eta)`.
+    pub fn gamma(&self) -> f64 {
+        self.rapidity.cosh()
+    }
+
+    /// `gamma beta = sinh(eta)`, the space part of the four-velocity.
+    pub fn gamma_beta(&self) -> f64 {
+        self.rapidity.sinh()
+    }
+
+    /// The velocity with which this one's rest frame sees its reference frame move, axes related
+    /// by a pure boost.
+    pub fn reversed(&self) -> Self {
+        Self {
+            direction: -self.direction,
+            ..*self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn relative_error(value: f64, expected: f64) -> f64 {
+        ((value - expected) / expected).abs()
+    }
+
+    #[test]
+    fn every_way_to_give_a_speed_gives_the_same_velocity() {
+        // beta = 0.6: gamma = 5/4, rapidity = ln 2.
+        let x = DVec3::new(3.0, 0.0, 0.0);
+        for velocity in [
+            Velocity::from_beta(0.6, x).unwrap(),
+            Velocity::from_one_minus_beta(0.4, x).unwrap(),
+            Velocity::from_gamma(1.25, x).unwrap(),
+            Velocity::from_rapidity(2f64.ln(), x).unwrap(),
+            Velocity::from_vector(DVec3::new(0.6, 0.0, 0.0)).unwrap(),
+        ] {
+            assert!(relative_error(velocity.rapidity(), std::f64::consts::LN_2) < 4e-16);
+            assert!(relative_error(velocity.gamma(), 1.25) < 4e-16);
+            assert!(relative_error(velocity.gamma_beta(), 0.75) < 4e-16);
+            assert_eq!(velocity.direction(), DVec3::X);
+        }
+    }
+
+    #[test]
+    fn speeds_that_beta_cannot_say_keep_their_digits() {
+        for exponent in [1, 10, 20, 100, 200, 300] {
+            let one_minus_beta = 10f64.powi(-exponent);
+            let velocity = Velocity::from_one_minus_beta(one_minus_beta, DVec3::X).unwrap();
+            // d ln(1 - beta) / d eta tends to -2: half an ulp of the rapidity is magnified by it.
+            let allowed = 2.0 * velocity.rapidity() * f64::EPSILON + 4.0 * f64::EPSILON;
+            assert!(relative_error(velocity.one_minus_beta(), one_minus_beta) < allowed);
+        }
+        let slow = Velocity::from_beta(5e-324, DVec3::Y).unwrap();
+        assert_eq!(slow.gamma_beta(), 5e-324);
+        let slow = Velocity::from_gamma(1.0 + f64::EPSILON, DVec3::Y).unwrap();
+        assert!(relative_error(slow.rapidity(), (2.0 * f64::EPSILON).sqrt()) < 4e-16);
+        let gamma = Velocity::from_gamma(1e150, DVec3::Y).unwrap();
+        assert!(relative_error(gamma.gamma(), 1e150) < 350.0 * f64::EPSILON);
+    }
+
+    #[test]
+    fn impossible_speeds_are_refused_with_their_value() {
+        let x = DVec3::X;
+        assert_eq!(Velocity::from_beta(1.0, x), Err(VelocityError::Beta(1.0)));
+        assert_eq!(Velocity::from_beta(-0.5, x), Err(VelocityError::Beta(-0.5)));
+        assert!(Velocity::from_beta(f64::NAN, x).is_err());
+        assert!(Velocity::from_one_minus_beta(0.0, x).is_err());
+        assert!(Velocity::from_one_minus_beta(5e-324, x).is_err());
+        assert!(Velocity::from_gamma(0.5, x).is_err());
+        assert!(Velocity::from_gamma(f64::INFINITY, x).is_err());
+        assert!(Velocity::from_rapidity(-1.0, x).is_err());
+        assert!(Velocity::from_rapidity(351.0, x).is_err());
+        assert!(Velocity::from_vector(DVec3::ONE).is_err());
+        assert!(Velocity::from_beta(0.5, DVec3::ZERO).is_err());
+        assert!(Velocity::from_beta(0.5, DVec3::new(f64::NAN, 0.0, 1.0)).is_err());
+    }
+
+    #[test]
+    fn directions_of_any_length_are_normalised() {
+        let expected = DVec3::new(0.6, 0.0, 0.8);
+        for length in [5e-320, 1e-300, 1e-3, 1.0, 1e10, 1e307] {
+            let velocity = Velocity::from_beta(0.5, expected * length).unwrap();
+            // Subnormal numbers have few digits of their own.
+            let allowed = if length < 1e-300 { 1e-3 } else { 4e-16 };
+            assert!((velocity.direction() - expected).length() < allowed);
+            assert!((velocity.direction().length() - 1.0).abs() < 4e-16);
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! Where and when an observer is, as a function of its own clock.
+
+use super::{Event, Velocity};
+
+/// The worldline of an observer in uniform motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorldLine {
+    /// The event at proper time 0.
+    pub origin: Event,
+    /// The velocity, in the frame of `origin`.
+    pub velocity: Velocity,
+}
+
+impl WorldLine {
+    /// The event at `proper_time` after [`WorldLine::origin`].
+    pub fn at(&self, proper_time: f64) -> Event {
+        self.origin + self.four_velocity() * proper_time
+    }
+
+    /// The change of the event with proper time: `(gamma, gamma beta n)`.
+    pub fn four_velocity(&self) -> Event {
+        Event::new(
+            self.velocity.gamma(),
+            self.velocity.direction() * self.velocity.gamma_beta(),
+        )
+    }
+}
