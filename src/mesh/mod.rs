@@ -8,6 +8,8 @@ pub use material::{AlphaMode, Filter, Image, Material, Sampler, Texture, Wrap};
 pub use part::{Model, Part};
 pub use shape::{Appearance, Shape};
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DMat3, DVec3, DVec4, Vec2, Vec4};
 use thiserror::Error;
 
@@ -17,15 +19,16 @@ use crate::spacetime::unit;
 ///
 /// Positions, normals and tangents are computed with and held in `f64`; texture coordinates and colours
 /// only travel and are held as files have them. Every constructor checks, so that indices are in
-/// range, every number is finite and every attribute has one value a vertex.
+/// range, every number is finite and every attribute has one value a vertex. What the photosurface map
+/// leaves as it is (triangles, texture coordinates, colours) is shared between a mesh and its images.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Mesh {
     positions: Vec<DVec3>,
-    triangles: Vec<[u32; 3]>,
+    triangles: Arc<[[u32; 3]]>,
     normals: Option<Vec<DVec3>>,
     tangents: Option<Vec<DVec4>>,
-    texture_coordinates: Vec<Vec<Vec2>>,
-    colors: Option<Vec<Vec4>>,
+    texture_coordinates: Vec<Arc<[Vec2]>>,
+    colors: Option<Arc<[Vec4]>>,
 }
 
 /// Why data does not make a [`Mesh`].
@@ -90,7 +93,7 @@ impl Mesh {
         check("POSITION", &positions, vertices, |p| p.is_finite())?;
         Ok(Self {
             positions,
-            triangles,
+            triangles: triangles.into(),
             ..Self::default()
         })
     }
@@ -133,7 +136,7 @@ impl Mesh {
         check("TEXCOORD", &coordinates, self.positions.len(), |c| {
             c.is_finite()
         })?;
-        self.texture_coordinates.push(coordinates);
+        self.texture_coordinates.push(coordinates.into());
         Ok(self)
     }
 
@@ -144,7 +147,7 @@ impl Mesh {
     /// A wrong count or a value that is not finite.
     pub fn with_colors(mut self, colors: Vec<Vec4>) -> Result<Self, MeshError> {
         check("COLOR_0", &colors, self.positions.len(), |c| c.is_finite())?;
-        self.colors = Some(colors);
+        self.colors = Some(colors.into());
         Ok(self)
     }
 
@@ -154,7 +157,7 @@ impl Mesh {
     }
 
     /// Corners of the triangles, counter-clockwise seen from outside.
-    pub fn triangles(&self) -> &[[u32; 3]] {
+    pub fn triangles(&self) -> &Arc<[[u32; 3]]> {
         &self.triangles
     }
 
@@ -169,13 +172,13 @@ impl Mesh {
     }
 
     /// All sets of texture coordinates.
-    pub fn texture_coordinates(&self) -> &[Vec<Vec2>] {
+    pub fn texture_coordinates(&self) -> &[Arc<[Vec2]>] {
         &self.texture_coordinates
     }
 
     /// Linear colours.
-    pub fn colors(&self) -> Option<&[Vec4]> {
-        self.colors.as_deref()
+    pub fn colors(&self) -> Option<&Arc<[Vec4]>> {
+        self.colors.as_ref()
     }
 
     /// The smallest and the largest corner of the box around the vertices; `None` without vertices.
@@ -210,11 +213,29 @@ impl Mesh {
             *tangent = unit_or_zero(linear * tangent.truncate()).extend(tangent.w * sign);
         }
         if mirror {
-            for corners in &mut self.triangles {
+            for corners in Arc::make_mut(&mut self.triangles) {
                 corners.swap(1, 2);
             }
         }
         self
+    }
+
+    /// The same mesh with other geometry; `positions` and the rest have one value a vertex, as before.
+    pub(crate) fn with_geometry(
+        &self,
+        positions: Vec<DVec3>,
+        normals: Option<Vec<DVec3>>,
+        tangents: Option<Vec<DVec4>>,
+    ) -> Self {
+        debug_assert_eq!(positions.len(), self.positions.len());
+        Self {
+            positions,
+            triangles: self.triangles.clone(),
+            normals,
+            tangents,
+            texture_coordinates: self.texture_coordinates.clone(),
+            colors: self.colors.clone(),
+        }
     }
 
     /// The mesh with the normals of its flat triangles, each with three vertices of its own: what
@@ -235,7 +256,8 @@ impl Mesh {
         }
         let normals = self.triangles.iter().flat_map(|&[a, b, c]| {
             let [a, b, c] = [a, b, c].map(|index| self.positions[index as usize]);
-            [unit_or_zero((b - a).cross(c - a)); 3]
+            // A triangle without area has no normal; any unit vector keeps files valid.
+            [unit((b - a).cross(c - a)).unwrap_or(DVec3::Y); 3]
         });
         Ok(Self {
             normals: Some(normals.collect()),
@@ -247,9 +269,9 @@ impl Mesh {
             texture_coordinates: self
                 .texture_coordinates
                 .iter()
-                .map(|set| pick(set, &corners))
+                .map(|set| pick(set, &corners).into())
                 .collect(),
-            colors: self.colors.map(|colors| pick(&colors, &corners)),
+            colors: self.colors.map(|colors| pick(&colors, &corners).into()),
         })
     }
 }

@@ -102,7 +102,7 @@ impl Velocity {
     ///
     /// `rapidity` negative, not finite or above [`MAX_RAPIDITY`], or no direction.
     pub fn from_rapidity(rapidity: f64, direction: DVec3) -> Result<Self, VelocityError> {
-        if !(rapidity >= 0.0) {
+        if rapidity.is_nan() || rapidity < 0.0 {
             return Err(VelocityError::Rapidity(rapidity));
         }
         if rapidity > MAX_RAPIDITY {
