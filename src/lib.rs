@@ -8,7 +8,8 @@ pub use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec4};
 
 pub use light_cone::PhotosurfaceMap;
 pub use mesh::{
-    AlphaMode, Appearance, Filter, Image, Material, Mesh, MeshError, Model, Part, Sampler, Shape,
-    Texture, Wrap,
+    AlphaMode, Appearance, Cells, Color, Cone, Count, Cuboid, Cylinder, Filter, Grid, Image,
+    Lattice, Length, Material, Mesh, MeshError, Model, Part, Rod, Sampler, Shape, ShapeError,
+    Sphere, Texture, Torus, Wrap,
 };
 pub use spacetime::{Event, Lorentz, MAX_RAPIDITY, Velocity, VelocityError, WorldLine};

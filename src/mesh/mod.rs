@@ -6,7 +6,10 @@ mod shape;
 
 pub use material::{AlphaMode, Filter, Image, Material, Sampler, Texture, Wrap};
 pub use part::{Model, Part};
-pub use shape::{Appearance, Shape};
+pub use shape::{
+    Appearance, Cells, Color, Cone, Count, Cuboid, Cylinder, Grid, Lattice, Length, Rod, Shape,
+    ShapeError, Sphere, Torus,
+};
 
 use std::sync::Arc;
 
