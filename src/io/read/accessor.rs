@@ -1,0 +1,290 @@
+//! Numbers from buffers: accessors of every type, interleaved, sparse, normalized.
+//!
+//! glTF 2.0, section 3.6.2. Every range is checked before the first number is read. The iterators of the
+//! `gltf` crate are not used: they compute ranges unchecked and panic on an accessor of no elements
+//! and on sparse indices out of order.
+
+use gltf::json::accessor::{ComponentType, Type};
+use gltf::json::{Accessor, Index, accessor::sparse::Sparse};
+
+use super::document::Document;
+use super::{AccessorProblem, ReadError, extensions};
+
+/// What an accessor has to hold.
+pub(super) struct Expected {
+    /// Any of these.
+    pub(super) types: &'static [Type],
+    /// Any of these.
+    pub(super) components: &'static [ComponentType],
+    /// Both in words.
+    pub(super) words: &'static str,
+}
+
+/// The numbers of an accessor.
+pub(super) struct Numbers {
+    /// All components, element by element.
+    pub(super) values: Vec<f64>,
+    /// Components of an element.
+    pub(super) width: usize,
+}
+
+impl Numbers {
+    /// The elements, each `width` numbers.
+    pub(super) fn elements(&self) -> impl ExactSizeIterator<Item = &[f64]> {
+        self.values.chunks_exact(self.width)
+    }
+}
+
+/// Without a buffer view an accessor is all zeros, for as many elements as it likes; more than this many
+/// (400 MB of positions) are no morph target of any mesh but an attempt on the memory.
+const MOST_ZEROS: usize = 1 << 24;
+
+impl Document {
+    /// The number of elements of an accessor.
+    pub(super) fn count(&self, index: Index<Accessor>) -> usize {
+        self.root.accessors[index.value()].count.0 as usize
+    }
+
+    /// The numbers of an accessor, normalized where it says so; `place` says what they are for.
+    pub(super) fn numbers(
+        &self,
+        index: Index<Accessor>,
+        expected: &Expected,
+        place: &str,
+    ) -> Result<Numbers, ReadError> {
+        let accessor = &self.root.accessors[index.value()];
+        self.check_compression(accessor)?;
+        self.numbers_of(accessor, expected)
+            .map_err(|problem| ReadError::Accessor {
+                place: place.to_owned(),
+                accessor: index.value(),
+                problem,
+            })
+    }
+
+    /// The bytes of a buffer view.
+    pub(super) fn view(&self, index: usize) -> Result<&[u8], AccessorProblem> {
+        let view = &self.root.buffer_views[index];
+        let buffer = view.buffer.value();
+        let Some(data) = &self.buffers[buffer] else {
+            return Err(AccessorProblem::NoData { buffer });
+        };
+        let start = view.byte_offset.unwrap_or_default().0;
+        let end = u128::from(start) + u128::from(view.byte_length.0);
+        if end > data.len() as u128 {
+            return Err(AccessorProblem::BeyondBuffer {
+                view: index,
+                end,
+                buffer,
+                length: data.len(),
+            });
+        }
+        Ok(&data[start as usize..end as usize])
+    }
+
+    /// Refuses compressed data that has no uncompressed stand-in, by the name of the compression.
+    fn check_compression(&self, accessor: &Accessor) -> Result<(), ReadError> {
+        let Some(view) = accessor.buffer_view else {
+            return Ok(());
+        };
+        let buffer = self.root.buffer_views[view.value()].buffer;
+        match extensions::compression_of_view(&self.root, view.value()) {
+            Some(name) if self.buffers[buffer.value()].is_none() => {
+                Err(ReadError::Extension { name: name.into() })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn numbers_of(
+        &self,
+        accessor: &Accessor,
+        expected: &Expected,
+    ) -> Result<Numbers, AccessorProblem> {
+        let kind = accessor.type_.unwrap();
+        let component = accessor.component_type.unwrap().0;
+        if !expected.types.contains(&kind) || !expected.components.contains(&component) {
+            return Err(AccessorProblem::Kind {
+                found: format!("{} of {}", type_name(kind), component_name(component)),
+                expected: expected.words,
+            });
+        }
+        let count = accessor.count.0 as usize;
+        let width = kind.multiplicity();
+        let layout = Layout {
+            component,
+            normalized: accessor.normalized,
+            width,
+        };
+        let mut values = match accessor.buffer_view {
+            Some(view) => {
+                let offset = accessor.byte_offset.unwrap_or_default().0;
+                self.elements(view.value(), offset, count, &layout)?
+            }
+            None if count > MOST_ZEROS => {
+                return Err(AccessorProblem::TooManyZeros {
+                    found: count,
+                    limit: MOST_ZEROS,
+                });
+            }
+            None => vec![0.0; count * width],
+        };
+        if let Some(sparse) = &accessor.sparse {
+            self.substitute(&mut values, sparse, count, &layout)?;
+        }
+        Ok(Numbers { values, width })
+    }
+
+    /// `count` elements from byte `offset` of a view on.
+    fn elements(
+        &self,
+        view: usize,
+        offset: u64,
+        count: usize,
+        layout: &Layout,
+    ) -> Result<Vec<f64>, AccessorProblem> {
+        let bytes = self.view(view)?;
+        if count == 0 {
+            return Ok(vec![]);
+        }
+        let size = layout.component.size() * layout.width;
+        let stride = self.root.buffer_views[view].byte_stride;
+        let stride = stride.map_or(size, |stride| stride.0);
+        if stride < size {
+            return Err(AccessorProblem::Stride { stride, size });
+        }
+        let end = u128::from(offset) + stride as u128 * (count as u128 - 1) + size as u128;
+        if end > bytes.len() as u128 {
+            return Err(AccessorProblem::BeyondView {
+                end,
+                view,
+                length: bytes.len(),
+            });
+        }
+        let mut values = Vec::with_capacity(count * layout.width);
+        for element in bytes[offset as usize..end as usize].chunks(stride) {
+            let components = element[..size].chunks_exact(layout.component.size());
+            values.extend(components.map(|bytes| layout.number(bytes)));
+        }
+        Ok(values)
+    }
+
+    /// Puts the values of a sparse accessor in their places.
+    fn substitute(
+        &self,
+        values: &mut [f64],
+        sparse: &Sparse,
+        count: usize,
+        layout: &Layout,
+    ) -> Result<(), AccessorProblem> {
+        let substitutes = sparse.count.0 as usize;
+        let index_layout = Layout {
+            component: sparse.indices.component_type.unwrap().0,
+            normalized: false,
+            width: 1,
+        };
+        let (view, offset) = (&sparse.indices.buffer_view, &sparse.indices.byte_offset);
+        let indices = self.elements(view.value(), offset.0, substitutes, &index_layout)?;
+        let (view, offset) = (&sparse.values.buffer_view, &sparse.values.byte_offset);
+        let new = self.elements(view.value(), offset.0, substitutes, layout)?;
+        let mut first_free = 0;
+        for (position, &index) in indices.iter().enumerate() {
+            let index = index as usize;
+            if index < first_free || index >= count {
+                return Err(AccessorProblem::SparseIndex {
+                    position,
+                    index: index as u32,
+                    count,
+                });
+            }
+            first_free = index + 1;
+            values[index * layout.width..][..layout.width]
+                .copy_from_slice(&new[position * layout.width..][..layout.width]);
+        }
+        Ok(())
+    }
+}
+
+/// How the elements of an accessor are written.
+struct Layout {
+    component: ComponentType,
+    normalized: bool,
+    /// Components of an element.
+    width: usize,
+}
+
+impl Layout {
+    /// One number; `bytes` are as many as the component has.
+    fn number(&self, bytes: &[u8]) -> f64 {
+        let (value, largest) = match (self.component, bytes) {
+            (ComponentType::I8, &[a]) => (f64::from(a as i8), 127.0),
+            (ComponentType::U8, &[a]) => (f64::from(a), 255.0),
+            (ComponentType::I16, &[a, b]) => (f64::from(i16::from_le_bytes([a, b])), 32767.0),
+            (ComponentType::U16, &[a, b]) => (f64::from(u16::from_le_bytes([a, b])), 65535.0),
+            (ComponentType::U32, &[a, b, c, d]) => {
+                return f64::from(u32::from_le_bytes([a, b, c, d]));
+            }
+            (ComponentType::F32, &[a, b, c, d]) => {
+                return f64::from(f32::from_le_bytes([a, b, c, d]));
+            }
+            _ => unreachable!("cut to the size of the component"),
+        };
+        match self.normalized {
+            true => f64::max(value / largest, -1.0),
+            false => value,
+        }
+    }
+}
+
+fn type_name(kind: Type) -> &'static str {
+    match kind {
+        Type::Scalar => "SCALAR",
+        Type::Vec2 => "VEC2",
+        Type::Vec3 => "VEC3",
+        Type::Vec4 => "VEC4",
+        Type::Mat2 => "MAT2",
+        Type::Mat3 => "MAT3",
+        Type::Mat4 => "MAT4",
+    }
+}
+
+fn component_name(component: ComponentType) -> &'static str {
+    match component {
+        ComponentType::I8 => "bytes",
+        ComponentType::U8 => "unsigned bytes",
+        ComponentType::I16 => "shorts",
+        ComponentType::U16 => "unsigned shorts",
+        ComponentType::U32 => "unsigned integers",
+        ComponentType::F32 => "floats",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn number(component: ComponentType, normalized: bool, bytes: &[u8]) -> f64 {
+        let layout = Layout {
+            component,
+            normalized,
+            width: 1,
+        };
+        layout.number(bytes)
+    }
+
+    /// The formulas of glTF 2.0, section 3.6.2.2.
+    #[test]
+    fn integers_are_normalized_as_gltf_says() {
+        assert_eq!(number(ComponentType::I8, true, &[127]), 1.0);
+        assert_eq!(number(ComponentType::I8, true, &[0x80]), -1.0);
+        assert_eq!(number(ComponentType::I8, false, &[0x80]), -128.0);
+        assert_eq!(number(ComponentType::U8, true, &[51]), 0.2);
+        assert_eq!(number(ComponentType::I16, true, &[1, 0x80]), -1.0);
+        assert_eq!(number(ComponentType::I16, true, &[0, 0x80]), -1.0);
+        assert_eq!(number(ComponentType::U16, true, &[255, 255]), 1.0);
+        assert_eq!(
+            number(ComponentType::F32, false, &2.5f32.to_le_bytes()),
+            2.5
+        );
+    }
+}

@@ -1,0 +1,293 @@
+//! The JSON of a glTF file, checked, and the buffers that belong to it.
+//!
+//! The `gltf` crate gives the types of the JSON and checks its references. What it is not used for, and why:
+//! its validation panics where a POSITION accessor is out of range and refuses files for want of
+//! bounds that nobody here reads; its types hold node transforms as `f32`; it refuses required
+//! extensions without regard to what they mean.
+
+use std::path::Path;
+
+use gltf::json::validation::{Checked, Error as Invalid, Validate};
+use gltf::json::{Root, Value, mesh::Semantic};
+use serde::Deserialize;
+
+use super::extensions;
+use super::note::Note;
+use super::uri::read_uri;
+use super::{DocumentProblem, ReadError};
+
+/// A glTF file whose references are all in range.
+pub(super) struct Document {
+    pub(super) root: Root,
+    /// As many as there are nodes.
+    pub(super) placements: Vec<Placement>,
+    /// `None` where a buffer has neither a URI nor the binary chunk.
+    pub(super) buffers: Vec<Option<Vec<u8>>>,
+}
+
+/// The transform of a node relative to its parent, with all digits that the file has.
+#[derive(Deserialize)]
+pub(super) struct Placement {
+    /// Column by column.
+    pub(super) matrix: Option<[f64; 16]>,
+    pub(super) translation: Option<[f64; 3]>,
+    /// x, y, z, w.
+    pub(super) rotation: Option<[f64; 4]>,
+    pub(super) scale: Option<[f64; 3]>,
+}
+
+/// Takes apart a GLB or glTF file; buffers outside it are looked for in `folder`.
+pub(super) fn read_document(
+    bytes: &[u8],
+    folder: &Path,
+    notes: &mut Vec<Note>,
+) -> Result<Document, ReadError> {
+    let (json, mut binary) = split(bytes)?;
+    let mut value: Value = serde_json::from_slice(&json).map_err(ReadError::Json)?;
+    check_version(&value)?;
+    mend(&mut value);
+    let placements = match value.get("nodes") {
+        Some(nodes) => schema::<Vec<Placement>>("nodes", nodes)?,
+        None => vec![],
+    };
+    let mut root: Root = schema("", &value)?;
+    extensions::check(&root, notes)?;
+    root.extensions_required.clear();
+    give_bounds(&mut root)?;
+    check_references(&root)?;
+
+    let mut buffers = vec![];
+    for (index, buffer) in root.buffers.iter().enumerate() {
+        buffers.push(match &buffer.uri {
+            Some(uri) => {
+                let place = format!("buffers[{index}].uri");
+                Some(read_uri(uri, folder, buffer.byte_length.0, &place)?)
+            }
+            // Only the first buffer may be the binary chunk (glTF 2.0, section 4.4.3.3).
+            None if index == 0 => binary.take(),
+            None => None,
+        });
+    }
+    Ok(Document {
+        root,
+        placements,
+        buffers,
+    })
+}
+
+/// The JSON and, in a GLB file that has one, the binary chunk.
+fn split(bytes: &[u8]) -> Result<(Vec<u8>, Option<Vec<u8>>), ReadError> {
+    if !bytes.starts_with(b"glTF") {
+        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        return Ok((text.to_vec(), None));
+    }
+    // The crate subtracts the header from the announced length without looking.
+    let length = |expected| ReadError::GlbLength {
+        found: bytes.len(),
+        expected,
+    };
+    let word = |at: usize| -> Option<u32> {
+        let word = bytes.get(at..at + 4)?;
+        Some(u32::from_le_bytes(word.try_into().ok()?))
+    };
+    let (Some(version), Some(announced)) = (word(4), word(8)) else {
+        return Err(length(20));
+    };
+    if version != 2 {
+        return Err(ReadError::Version {
+            found: version.to_string(),
+        });
+    }
+    let announced = announced as usize;
+    if announced < 20 || announced > bytes.len() {
+        return Err(length(announced.max(20)));
+    }
+    let glb = gltf::Glb::from_slice(&bytes[..announced]).map_err(ReadError::Glb)?;
+    Ok((glb.json.into_owned(), glb.bin.map(|bin| bin.into_owned())))
+}
+
+fn check_version(value: &Value) -> Result<(), ReadError> {
+    match value.pointer("/asset/version").and_then(Value::as_str) {
+        Some(version) if version == "2" || version.starts_with("2.") => Ok(()),
+        Some(version) => Err(ReadError::Version {
+            found: version.to_owned(),
+        }),
+        None => Err(ReadError::Document {
+            place: "asset.version".to_owned(),
+            problem: DocumentProblem::Missing,
+        }),
+    }
+}
+
+/// Makes two harmless things palatable to the `gltf` crate: a scene without nodes gets an empty list of
+/// them, and attributes that glTF does not define get the underscore that marks them as custom.
+fn mend(value: &mut Value) {
+    for scene in items(value.get_mut("scenes")) {
+        if let Value::Object(scene) = scene {
+            scene.entry("nodes").or_insert_with(|| Value::Array(vec![]));
+        }
+    }
+    for mesh in items(value.get_mut("meshes")) {
+        for primitive in items(mesh.get_mut("primitives")) {
+            if let Some(Value::Object(attributes)) = primitive.get_mut("attributes") {
+                let unknown = |name: &String| !is_semantic(name);
+                for name in attributes
+                    .keys()
+                    .cloned()
+                    .filter(unknown)
+                    .collect::<Vec<_>>()
+                {
+                    if let Some(accessor) = attributes.remove(&name) {
+                        attributes.insert(format!("_{name}"), accessor);
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn items(value: Option<&mut Value>) -> impl Iterator<Item = &mut Value> {
+    value.and_then(Value::as_array_mut).into_iter().flatten()
+}
+
+fn is_semantic(name: &str) -> bool {
+    let is_set = |(kind, set): (&str, &str)| {
+        ["TEXCOORD", "COLOR", "JOINTS", "WEIGHTS"].contains(&kind) && set.parse::<u32>().is_ok()
+    };
+    name.starts_with('_')
+        || ["POSITION", "NORMAL", "TANGENT"].contains(&name)
+        || name.split_once('_').is_some_and(is_set)
+}
+
+/// The part of the JSON at `place` as the type that glTF has there.
+fn schema<T: for<'a> Deserialize<'a>>(place: &str, value: &Value) -> Result<T, ReadError> {
+    serde_path_to_error::deserialize(value).map_err(|error| {
+        let path = error.path().to_string();
+        let place = match (place, path.as_str()) {
+            ("", ".") => "the file".to_owned(),
+            ("", _) => path,
+            (_, ".") => place.to_owned(),
+            _ => format!("{place}{path}"),
+        };
+        ReadError::Schema {
+            place,
+            source: error.into_inner(),
+        }
+    })
+}
+
+/// Gives every POSITION accessor bounds, which the crate wants and nobody here reads.
+fn give_bounds(root: &mut Root) -> Result<(), ReadError> {
+    let position = Checked::Valid(Semantic::Positions);
+    for (m, mesh) in root.meshes.iter().enumerate() {
+        for (p, primitive) in mesh.primitives.iter().enumerate() {
+            let Some(index) = primitive.attributes.get(&position) else {
+                continue;
+            };
+            let Some(accessor) = root.accessors.get_mut(index.value()) else {
+                return Err(ReadError::Document {
+                    place: format!("meshes[{m}].primitives[{p}].attributes[\"POSITION\"]"),
+                    problem: DocumentProblem::OutOfRange,
+                });
+            };
+            accessor.min = Some(Value::from(vec![0.0; 3]));
+            accessor.max = Some(Value::from(vec![0.0; 3]));
+        }
+    }
+    Ok(())
+}
+
+fn check_references(root: &Root) -> Result<(), ReadError> {
+    let mut first = None;
+    root.validate(root, gltf::json::Path::new, &mut |path, error| {
+        first.get_or_insert_with(|| (path(), error));
+    });
+    let Some((path, error)) = first else {
+        return Ok(());
+    };
+    Err(ReadError::Document {
+        place: path.as_str().to_owned(),
+        problem: match error {
+            Invalid::IndexOutOfBounds => DocumentProblem::OutOfRange,
+            Invalid::Missing => DocumentProblem::Missing,
+            Invalid::Oversize => DocumentProblem::Oversize,
+            Invalid::Invalid | Invalid::Unsupported => DocumentProblem::Invalid,
+        },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(json: &str) -> Result<Document, ReadError> {
+        read_document(json.as_bytes(), Path::new("."), &mut vec![])
+    }
+
+    fn message(json: &str) -> String {
+        let error = read(json).err().expect("an error");
+        let source = std::error::Error::source(&error);
+        source.map_or(error.to_string(), |source| format!("{error}: {source}"))
+    }
+
+    #[test]
+    fn a_translation_keeps_all_its_digits() {
+        let json =
+            r#"{"asset": {"version": "2.0"}, "nodes": [{"translation": [1e9, 0.1, 1e-300]}]}"#;
+        let document = read(json).unwrap();
+        assert_eq!(document.placements[0].translation, Some([1e9, 0.1, 1e-300]));
+    }
+
+    #[test]
+    fn a_scene_may_be_empty_and_an_attribute_unknown() {
+        let json = r#"{"asset": {"version": "2.0"}, "scenes": [{}], "accessors": [{"count": 1,
+            "componentType": 5126, "type": "VEC3", "bufferView": 0}], "buffers": [{"byteLength": 12}],
+            "bufferViews": [{"buffer": 0, "byteLength": 12}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "HEAT": 0}}]}]}"#;
+        let document = read(json).unwrap();
+        let attributes = &document.root.meshes[0].primitives[0].attributes;
+        let names: Vec<String> = attributes.keys().map(ToString::to_string).collect();
+        assert_eq!(names, ["_HEAT", "POSITION"]);
+    }
+
+    #[test]
+    fn errors_say_where() {
+        assert_eq!(
+            message(r#"{"asset": {}}"#),
+            "asset.version: missing, expected by glTF 2.0"
+        );
+        assert_eq!(
+            message(r#"{"asset": {"version": "1.0"}}"#),
+            "glTF of version 1.0, expected 2"
+        );
+        assert_eq!(
+            message("[1,\n 2"),
+            "not glTF, neither binary nor JSON: EOF while parsing a list at line 2 column 2"
+        );
+        let wrong = r#"{"asset": {"version": "2.0"}, "nodes": [{}, {"scale": [1, 2, "x"]}]}"#;
+        assert_eq!(
+            message(wrong),
+            "nodes[1].scale[2]: not as glTF has it: invalid type: string \"x\", expected f64"
+        );
+        let lost = r#"{"asset": {"version": "2.0"}, "nodes": [{"mesh": 3}]}"#;
+        assert_eq!(
+            message(lost),
+            "nodes[0].mesh: refers to something that is not there, expected an index in range"
+        );
+        let lost = r#"{"asset": {"version": "2.0"},
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 7}}]}]}"#;
+        assert!(message(lost).starts_with("meshes[0].primitives[0].attributes[\"POSITION\"]: "));
+    }
+
+    #[test]
+    fn a_cut_glb_says_how_long_it_should_be() {
+        let header = [&b"glTF"[..], &2u32.to_le_bytes(), &60u32.to_le_bytes()].concat();
+        let error = split(&header).unwrap_err().to_string();
+        assert_eq!(error, "a GLB file of 12 bytes, expected 60: it is cut off");
+        assert!(split(&header[..7]).is_err());
+        let short = [&b"glTF"[..], &2u32.to_le_bytes(), &3u32.to_le_bytes()].concat();
+        assert!(matches!(split(&short), Err(ReadError::GlbLength { .. })));
+        let old = [&b"glTF"[..], &1u32.to_le_bytes(), &60u32.to_le_bytes()].concat();
+        assert!(matches!(split(&old), Err(ReadError::Version { found }) if found == "1"));
+    }
+}

@@ -1,0 +1,59 @@
+//! Models in: glTF, GLB and OBJ files as parts with attributes and materials.
+//!
+//! What is read is read as the format defines it; what cannot be is an error that says where; what is left
+//! out is a note.
+
+mod accessor;
+mod deform;
+mod document;
+mod error;
+mod extensions;
+mod gltf_model;
+mod instances;
+mod materials;
+mod mtl;
+mod names;
+mod nodes;
+mod normals;
+mod note;
+mod obj;
+mod obj_lines;
+mod polygon;
+mod primitive;
+mod uri;
+
+use std::path::Path;
+
+pub use error::{AccessorProblem, DocumentProblem, NodeProblem, ObjProblem, ReadError, UriProblem};
+pub use gltf_model::read_gltf_bytes;
+pub use note::Note;
+
+use crate::mesh::Model;
+use obj::read_obj_bytes;
+use uri::read_file;
+
+/// Reads the model in a GLB, glTF or OBJ file, and says what of it was left out.
+///
+/// glTF 2.0: all triangles of the default scene, with the transforms of their nodes, in the default pose of
+/// skins and morph targets. OBJ: all faces. Either with normals, texture coordinates, colours and the base
+/// of materials.
+///
+/// # Errors
+///
+/// A file that cannot be read, that is not as its format defines it, that needs an extension which is
+/// not known, or that has no triangles.
+pub fn read_model(path: &Path) -> Result<(Model, Vec<Note>), ReadError> {
+    let extension = path.extension().unwrap_or_default();
+    let extension = extension.to_string_lossy().to_lowercase();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let bytes = read_file(path, u64::MAX)?;
+    match extension.as_str() {
+        "glb" | "gltf" => read_gltf_bytes(&bytes, folder),
+        "obj" => {
+            let stem = path.file_stem().unwrap_or_default();
+            read_obj_bytes(&bytes, folder, &stem.to_string_lossy())
+        }
+        _ if bytes.starts_with(b"glTF") => read_gltf_bytes(&bytes, folder),
+        _ => Err(ReadError::UnknownExtension { extension }),
+    }
+}

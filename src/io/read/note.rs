@@ -1,0 +1,254 @@
+//! What was found in a file and is not carried over as it stands.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// Something in a file that was left out, replaced or chosen, and that its user may want to know.
+///
+/// `Display` gives one line.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Note {
+    /// Several scenes, or none marked as the one to show.
+    Scene {
+        /// The one that is read; `None` means all nodes.
+        read: Option<usize>,
+        /// How many there are.
+        scenes: usize,
+    },
+    /// Things that have no surface, or that would change it in time.
+    NotCarried {
+        /// Such as "2 cameras".
+        what: String,
+    },
+    /// An extension of glTF that does not change the shape.
+    Extension {
+        /// Which one.
+        name: String,
+    },
+    /// A node that is switched off.
+    Hidden {
+        /// Its name.
+        node: String,
+    },
+    /// A node scaled to nothing.
+    Flat {
+        /// Its name.
+        node: String,
+    },
+    /// Points or lines.
+    PointsAndLines {
+        /// Name of the node or the file that has them.
+        place: String,
+        /// How many primitives, or lines of the file.
+        count: usize,
+    },
+    /// A primitive or a face without a triangle.
+    Empty {
+        /// Which one.
+        place: String,
+        /// How many.
+        count: usize,
+    },
+    /// Indices that do not make up a triangle.
+    LeftOver {
+        /// Which primitive.
+        place: String,
+        /// How many indices.
+        count: usize,
+    },
+    /// Data of vertices that no photosurface carries.
+    Attributes {
+        /// Which mesh.
+        mesh: String,
+        /// Their names.
+        names: Vec<String>,
+    },
+    /// Colours beyond 0 to 1.
+    ColorsClamped {
+        /// Which mesh.
+        mesh: String,
+        /// How many vertices.
+        count: usize,
+    },
+    /// Colours of vertices in an OBJ file, where nobody says what they mean.
+    ColorsFromSrgb,
+    /// A mesh that has other forms.
+    Morph {
+        /// Which mesh.
+        mesh: String,
+        /// The weights that are applied.
+        weights: Vec<f32>,
+    },
+    /// A mesh that follows joints.
+    Skin {
+        /// Name of the node.
+        node: String,
+    },
+    /// Normals without a direction.
+    Normals {
+        /// Which mesh.
+        mesh: String,
+        /// How many vertices.
+        count: usize,
+    },
+    /// Corners without texture coordinates in a part that has some.
+    TextureCoordinates {
+        /// Which part.
+        part: String,
+        /// How many vertices.
+        count: usize,
+    },
+    /// What a material has beyond base colour, metalness, roughness, opacity and sidedness.
+    Material {
+        /// Its name.
+        material: String,
+        /// What else it has.
+        properties: Vec<String>,
+    },
+    /// An image that cannot be used.
+    Image {
+        /// Which one.
+        image: String,
+        /// Why.
+        reason: String,
+    },
+    /// A material library that cannot be read.
+    MaterialLibrary {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// A material that no library defines.
+    UnknownMaterial {
+        /// Its name.
+        name: String,
+    },
+    /// Lines of a material library that make no sense.
+    MaterialLines {
+        /// The file.
+        path: PathBuf,
+        /// The numbers of the lines.
+        lines: Vec<usize>,
+    },
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Scene { read: None, .. } => write!(f, "no scenes: all nodes are read"),
+            Self::Scene {
+                read: Some(read),
+                scenes,
+            } => write!(f, "{scenes} scenes: only scenes[{read}] is read"),
+            Self::NotCarried { what } => write!(f, "{what}: not carried over"),
+            Self::Extension { name } => write!(f, "extension {name}: not carried over"),
+            Self::Hidden { node } => write!(f, "node {node:?} is not visible: skipped"),
+            Self::Flat { node } => write!(f, "node {node:?} is scaled to no volume: skipped"),
+            Self::PointsAndLines { place, count } => {
+                let those = plural(*count, "primitive");
+                write!(f, "{place}: {those} of points or lines skipped")
+            }
+            Self::Empty { place, count } => {
+                let those = plural(*count, "part");
+                write!(f, "{place}: {those} without triangles skipped")
+            }
+            Self::LeftOver { place, count } => {
+                let those = plural(*count, "left-over index");
+                write!(
+                    f,
+                    "{place}: {those} skipped, expected three for each triangle"
+                )
+            }
+            Self::Attributes { mesh, names } => {
+                write!(f, "{mesh}: {} not carried over", names.join(", "))
+            }
+            Self::ColorsClamped { mesh, count } => {
+                let those = plural(*count, "colour");
+                write!(f, "{mesh}: {those} outside 0 to 1 clamped")
+            }
+            Self::ColorsFromSrgb => write!(f, "vertex colours: taken as sRGB, made linear"),
+            Self::Morph { mesh, weights } => {
+                write!(f, "{mesh}: morph targets applied with weights {weights:?}")
+            }
+            Self::Skin { node } => write!(f, "node {node:?}: skin applied in its default pose"),
+            Self::Normals { mesh, count } => {
+                let those = plural(*count, "zero normal");
+                write!(
+                    f,
+                    "{mesh}: {those} replaced by that of an adjacent triangle"
+                )
+            }
+            Self::TextureCoordinates { part, count } => {
+                let those = plural(*count, "vertex");
+                write!(
+                    f,
+                    "part {part:?}: {those} without texture coordinates get 0, 0"
+                )
+            }
+            Self::Material {
+                material,
+                properties,
+            } => {
+                let properties = properties.join(", ");
+                write!(f, "material {material:?}: {properties} not carried over")
+            }
+            Self::Image { image, reason } => write!(f, "image {image} dropped: {reason}"),
+            Self::MaterialLibrary { path, reason } => {
+                write!(f, "material library {path:?} skipped: {reason}")
+            }
+            Self::UnknownMaterial { name } => {
+                write!(
+                    f,
+                    "material {name:?} is not defined: parts are left without"
+                )
+            }
+            Self::MaterialLines { path, lines } => {
+                write!(
+                    f,
+                    "material library {path:?}: malformed lines {lines:?} skipped"
+                )
+            }
+        }
+    }
+}
+
+/// Adds a note unless it has been made already: one mesh may be drawn many times.
+pub(super) fn add_note(notes: &mut Vec<Note>, note: Note) {
+    if !notes.contains(&note) {
+        notes.push(note);
+    }
+}
+
+/// Such as "1 camera", "2 cameras".
+pub(super) fn plural(count: usize, singular: &str) -> String {
+    match (count, singular) {
+        (1, _) => format!("1 {singular}"),
+        (_, "vertex") => format!("{count} vertices"),
+        (_, "left-over index") => format!("{count} left-over indices"),
+        (_, "mesh") => format!("{count} meshes"),
+        _ => format!("{count} {singular}s"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_note_is_one_line_and_made_once() {
+        let note = Note::PointsAndLines {
+            place: "node \"grid\"".into(),
+            count: 2,
+        };
+        let mut notes = vec![];
+        add_note(&mut notes, note.clone());
+        add_note(&mut notes, note);
+        assert_eq!(notes.len(), 1);
+        assert_eq!(
+            notes[0].to_string(),
+            "node \"grid\": 2 primitives of points or lines skipped"
+        );
+    }
+}

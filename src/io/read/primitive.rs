@@ -1,0 +1,371 @@
+//! One primitive of a glTF mesh: its vertices, its triangles.
+//!
+//! glTF 2.0, section 3.7.2. Attributes are read as what they mean, whatever they are stored as;
+//! `KHR_mesh_quantization` only widens what they may be stored as.
+
+use glam::{DVec3, DVec4, Vec2, Vec4};
+use gltf::json::accessor::{ComponentType, Type};
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::validation::Checked;
+use gltf::json::{Accessor, Index};
+
+use super::accessor::{Expected, Numbers};
+use super::document::Document;
+use super::normals::replace_zero_normals;
+use super::note::{Note, add_note};
+use super::{AccessorProblem, ReadError};
+use crate::mesh::Mesh;
+
+const VECTOR: Expected = Expected {
+    types: &[Type::Vec3],
+    components: &FLOAT_OR_SMALL,
+    words: "VEC3 of floats, or of bytes or shorts as KHR_mesh_quantization has it",
+};
+const TANGENT: Expected = Expected {
+    types: &[Type::Vec4],
+    components: &FLOAT_OR_SMALL,
+    words: "VEC4 of floats, or of bytes or shorts as KHR_mesh_quantization has it",
+};
+const TEXTURE_COORDINATE: Expected = Expected {
+    types: &[Type::Vec2],
+    components: &FLOAT_OR_SMALL,
+    words: "VEC2 of floats, bytes or shorts",
+};
+const COLOR: Expected = Expected {
+    types: &[Type::Vec3, Type::Vec4],
+    components: &[ComponentType::F32, ComponentType::U8, ComponentType::U16],
+    words: "VEC3 or VEC4 of floats, unsigned bytes or unsigned shorts",
+};
+const INDEX: Expected = Expected {
+    types: &[Type::Scalar],
+    components: &[ComponentType::U8, ComponentType::U16, ComponentType::U32],
+    words: "SCALAR of unsigned bytes, shorts or integers",
+};
+const FLOAT_OR_SMALL: [ComponentType; 5] = [
+    ComponentType::F32,
+    ComponentType::I8,
+    ComponentType::U8,
+    ComponentType::I16,
+    ComponentType::U16,
+];
+
+/// A primitive, and what errors and notes about it need.
+pub(super) struct Source<'a> {
+    pub(super) document: &'a Document,
+    pub(super) primitive: &'a Primitive,
+    /// Such as `meshes[2].primitives[0] (mesh "Wheel")`.
+    pub(super) place: String,
+    /// Such as `mesh "Wheel"`.
+    pub(super) mesh: String,
+}
+
+/// The attributes of vertices that a change of shape changes.
+pub(super) struct Shape {
+    pub(super) positions: Vec<DVec3>,
+    pub(super) normals: Option<Vec<DVec3>>,
+    pub(super) tangents: Option<Vec<DVec4>>,
+    /// Whether the triangles have come to face the other way.
+    pub(super) mirrored: bool,
+}
+
+/// The mesh of a primitive, its shape changed by `deform`; `None` without triangles.
+pub(super) fn read_primitive(
+    source: &Source,
+    deform: impl FnOnce(&mut Shape) -> Result<(), ReadError>,
+    notes: &mut Vec<Note>,
+) -> Result<Option<Mesh>, ReadError> {
+    let positions = source
+        .attribute(&Semantic::Positions)
+        .map_or(0, |index| source.document.count(index));
+    let mut triangles = if positions > 0 {
+        source.triangles(positions, notes)?
+    } else {
+        vec![]
+    };
+    if triangles.is_empty() {
+        let place = source.place.clone();
+        add_note(notes, Note::Empty { place, count: 1 });
+        return Ok(None);
+    }
+    let mut shape = source.shape()?;
+    deform(&mut shape)?;
+    if shape.mirrored {
+        triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    }
+    let vertices = shape.positions.len();
+    let wrong = |error| ReadError::Mesh {
+        place: source.place.clone(),
+        source: error,
+    };
+    let mut mesh = Mesh::new(shape.positions, triangles).map_err(wrong)?;
+    if let Some(normals) = shape.normals {
+        mesh = mesh.with_normals(normals).map_err(wrong)?;
+    }
+    if let Some(tangents) = shape.tangents {
+        mesh = mesh.with_tangents(tangents).map_err(wrong)?;
+    }
+    let mut sets = 0;
+    while let Some(index) = source.attribute(&Semantic::TexCoords(sets)) {
+        let name = Semantic::TexCoords(sets).to_string();
+        let numbers = source.numbers(index, &TEXTURE_COORDINATE, &name, vertices)?;
+        let pairs = numbers.elements();
+        let set = pairs.map(|uv| Vec2::new(uv[0] as f32, uv[1] as f32));
+        mesh = mesh
+            .with_texture_coordinates(set.collect())
+            .map_err(wrong)?;
+        sets += 1;
+    }
+    if let Some(index) = source.attribute(&Semantic::Colors(0)) {
+        let numbers = source.numbers(index, &COLOR, "COLOR_0", vertices)?;
+        let full = source.full_scale(index);
+        let colors = numbers.elements().map(|c| color(c, full)).collect();
+        // Checked before they are clamped, which would make a number of NaN.
+        mesh = mesh.with_colors(colors).map_err(wrong)?;
+        mesh = clamp_colors(mesh, source, notes).map_err(wrong)?;
+    }
+    source.note_attributes(sets, notes);
+    let (mesh, replaced) = replace_zero_normals(mesh);
+    if replaced > 0 {
+        let note = Note::Normals {
+            mesh: source.mesh.clone(),
+            count: replaced,
+        };
+        add_note(notes, note);
+    }
+    Ok(Some(mesh))
+}
+
+impl Source<'_> {
+    /// The accessor of an attribute, if the primitive has it.
+    pub(super) fn attribute(&self, semantic: &Semantic) -> Option<Index<Accessor>> {
+        let attributes = &self.primitive.attributes;
+        attributes.get(&Checked::Valid(semantic.clone())).copied()
+    }
+
+    /// The numbers of an accessor that has to have one element for each vertex.
+    pub(super) fn numbers(
+        &self,
+        index: Index<Accessor>,
+        expected: &Expected,
+        name: &str,
+        vertices: usize,
+    ) -> Result<Numbers, ReadError> {
+        let place = format!("{}, {name}", self.place);
+        let found = self.document.count(index);
+        // Before reading: it may be a count that no memory has room for.
+        if found != vertices {
+            return Err(ReadError::Accessor {
+                place,
+                accessor: index.value(),
+                problem: AccessorProblem::Count {
+                    found,
+                    expected: vertices,
+                },
+            });
+        }
+        self.document.numbers(index, expected, &place)
+    }
+
+    /// Vectors for all vertices.
+    pub(super) fn vectors(
+        &self,
+        index: Index<Accessor>,
+        name: &str,
+        vertices: usize,
+    ) -> Result<Vec<DVec3>, ReadError> {
+        let numbers = self.numbers(index, &VECTOR, name, vertices)?;
+        Ok(numbers.elements().map(DVec3::from_slice).collect())
+    }
+
+    /// Positions, normals and tangents as they are stored.
+    fn shape(&self) -> Result<Shape, ReadError> {
+        let mut positions = vec![];
+        if let Some(index) = self.attribute(&Semantic::Positions) {
+            positions = self.vectors(index, "POSITION", self.document.count(index))?;
+        }
+        let normals = self
+            .attribute(&Semantic::Normals)
+            .map(|index| self.vectors(index, "NORMAL", positions.len()))
+            .transpose()?;
+        let tangents = self
+            .attribute(&Semantic::Tangents)
+            .map(|index| self.numbers(index, &TANGENT, "TANGENT", positions.len()))
+            .transpose()?
+            .map(|numbers| numbers.elements().map(DVec4::from_slice).collect());
+        Ok(Shape {
+            positions,
+            normals,
+            tangents,
+            mirrored: false,
+        })
+    }
+
+    fn triangles(
+        &self,
+        vertices: usize,
+        notes: &mut Vec<Note>,
+    ) -> Result<Vec<[u32; 3]>, ReadError> {
+        let indices: Vec<u32> = match self.primitive.indices {
+            Some(index) => self.indices(index)?,
+            None => (0..u32::try_from(vertices).unwrap_or(u32::MAX)).collect(),
+        };
+        let mode = self.primitive.mode.unwrap();
+        let left_over = indices.len() % 3;
+        if mode == Mode::Triangles && left_over > 0 {
+            let note = Note::LeftOver {
+                place: self.place.clone(),
+                count: left_over,
+            };
+            add_note(notes, note);
+        }
+        Ok(triangles(mode, &indices))
+    }
+
+    fn indices(&self, index: Index<Accessor>) -> Result<Vec<u32>, ReadError> {
+        let place = format!("{}, indices", self.place);
+        let numbers = self.document.numbers(index, &INDEX, &place)?;
+        let component = self.document.root.accessors[index.value()].component_type;
+        let restart = match component.unwrap().0 {
+            ComponentType::U8 => u32::from(u8::MAX),
+            ComponentType::U16 => u32::from(u16::MAX),
+            _ => u32::MAX,
+        };
+        let indices: Vec<u32> = numbers.values.iter().map(|&i| i as u32).collect();
+        match indices.iter().position(|&i| i == restart) {
+            Some(position) => Err(ReadError::Accessor {
+                place,
+                accessor: index.value(),
+                problem: AccessorProblem::Restart {
+                    position,
+                    index: restart,
+                },
+            }),
+            None => Ok(indices),
+        }
+    }
+
+    /// What the largest integer of a colour has to be divided by: glTF wants colours normalized, so
+    /// those that do not say so are meant to be.
+    fn full_scale(&self, index: Index<Accessor>) -> f64 {
+        let accessor = &self.document.root.accessors[index.value()];
+        match accessor.component_type.unwrap().0 {
+            ComponentType::U8 if !accessor.normalized => 255.0,
+            ComponentType::U16 if !accessor.normalized => 65535.0,
+            _ => 1.0,
+        }
+    }
+
+    /// Names the attributes that are left behind.
+    fn note_attributes(&self, texture_coordinate_sets: u32, notes: &mut Vec<Note>) {
+        let left = |semantic: &Checked<Semantic>| match semantic {
+            Checked::Valid(Semantic::Extras(_)) => true,
+            Checked::Valid(Semantic::Colors(set)) => *set > 0,
+            Checked::Valid(Semantic::TexCoords(set)) => *set >= texture_coordinate_sets,
+            _ => false,
+        };
+        let names: Vec<String> = self
+            .primitive
+            .attributes
+            .keys()
+            .filter(|semantic| left(semantic))
+            .map(ToString::to_string)
+            .collect();
+        if !names.is_empty() {
+            let mesh = self.mesh.clone();
+            add_note(notes, Note::Attributes { mesh, names });
+        }
+    }
+}
+
+/// Triangles, strips and fans as triangles of their own. In a strip two equal indices only lead on to
+/// the next piece of it, and the triangles that they make are left out.
+fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
+    let windows = indices.windows(3).enumerate();
+    let is_open = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+    match mode {
+        Mode::Triangles => indices.as_chunks().0.to_vec(),
+        Mode::TriangleStrip => windows
+            .map(|(i, w)| match i % 2 {
+                0 => [w[0], w[1], w[2]],
+                _ => [w[0], w[2], w[1]],
+            })
+            .filter(is_open)
+            .collect(),
+        Mode::TriangleFan => windows
+            .map(|(_, w)| [w[1], w[2], indices[0]])
+            .filter(is_open)
+            .collect(),
+        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => vec![],
+    }
+}
+
+fn color(components: &[f64], full: f64) -> Vec4 {
+    let component = |i: usize| (components[i] / full) as f32;
+    let opacity = if components.len() == 4 {
+        component(3)
+    } else {
+        1.0
+    };
+    Vec4::new(component(0), component(1), component(2), opacity)
+}
+
+fn clamp_colors(
+    mesh: Mesh,
+    source: &Source,
+    notes: &mut Vec<Note>,
+) -> Result<Mesh, crate::mesh::MeshError> {
+    let colors = mesh.colors().unwrap_or_default();
+    let clamped: Vec<Vec4> = colors
+        .iter()
+        .map(|c| c.clamp(Vec4::ZERO, Vec4::ONE))
+        .collect();
+    let count = colors.iter().zip(&clamped).filter(|(a, b)| a != b).count();
+    if count == 0 {
+        return Ok(mesh);
+    }
+    let note = Note::ColorsClamped {
+        mesh: source.mesh.clone(),
+        count,
+    };
+    add_note(notes, note);
+    mesh.with_colors(clamped)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The orders that glTF 2.0 gives in section 3.7.2.1.
+    #[test]
+    fn strips_and_fans_wind_as_gltf_says() {
+        let indices = [10, 11, 12, 13, 14];
+        assert_eq!(
+            triangles(Mode::TriangleStrip, &indices),
+            [[10, 11, 12], [11, 13, 12], [12, 13, 14]]
+        );
+        assert_eq!(
+            triangles(Mode::TriangleFan, &indices),
+            [[11, 12, 10], [12, 13, 10], [13, 14, 10]]
+        );
+        assert_eq!(triangles(Mode::Triangles, &indices), [[10, 11, 12]]);
+        assert!(triangles(Mode::TriangleStrip, &[0, 1]).is_empty());
+    }
+
+    #[test]
+    fn a_stitched_strip_loses_its_stitches_and_keeps_its_winding() {
+        // Two squares, stitched by repeating the last index and the first.
+        let indices = [0, 1, 2, 3, 3, 4, 4, 5, 6, 7];
+        assert_eq!(
+            triangles(Mode::TriangleStrip, &indices),
+            [[0, 1, 2], [1, 3, 2], [4, 5, 6], [5, 7, 6]]
+        );
+    }
+
+    #[test]
+    fn a_colour_without_opacity_is_opaque() {
+        assert_eq!(
+            color(&[0.0, 127.5, 255.0], 255.0),
+            Vec4::new(0.0, 0.5, 1.0, 1.0)
+        );
+    }
+}

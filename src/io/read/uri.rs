@@ -1,0 +1,138 @@
+//! References from a glTF file to other files, and data written in place of them.
+//!
+//! glTF 2.0, section 2.8: relative paths as in RFC 3986, with reserved characters percent-encoded,
+//! and data URIs as in RFC 2397. Everything else would have to be fetched and is refused.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use data_url::DataUrl;
+use percent_encoding::percent_decode_str;
+
+use super::{ReadError, UriProblem};
+
+/// The bytes that `uri` stands for, at most `limit` of them; `place` says where it stands.
+pub(super) fn read_uri(
+    uri: &str,
+    folder: &Path,
+    limit: u64,
+    place: &str,
+) -> Result<Vec<u8>, ReadError> {
+    let wrong = |problem| ReadError::Uri {
+        place: place.to_owned(),
+        problem,
+    };
+    match scheme(uri) {
+        Some("data") => decode_data(uri).map_err(wrong),
+        Some(scheme) => Err(wrong(UriProblem::Scheme {
+            uri: shortened(uri),
+            scheme: scheme.to_owned(),
+        })),
+        None => {
+            let relative = decode_path(uri).map_err(wrong)?;
+            read_file(&folder.join(relative), limit)
+        }
+    }
+}
+
+/// The bytes of a file, at most `limit` of them.
+pub(super) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, ReadError> {
+    let mut bytes = vec![];
+    File::open(path)
+        .and_then(|file| file.take(limit).read_to_end(&mut bytes))
+        .map_err(|source| ReadError::File {
+            path: path.to_owned(),
+            source,
+        })?;
+    Ok(bytes)
+}
+
+/// What stands before the first colon, if that makes a scheme (RFC 3986, section 3.1).
+fn scheme(uri: &str) -> Option<&str> {
+    let (scheme, _) = uri.split_once(':')?;
+    let allowed = |c: char| c.is_ascii_alphanumeric() || "+-.".contains(c);
+    (scheme.starts_with(|c: char| c.is_ascii_alphabetic()) && scheme.chars().all(allowed))
+        .then_some(scheme)
+}
+
+fn decode_data(uri: &str) -> Result<Vec<u8>, UriProblem> {
+    DataUrl::process(uri)
+        .ok()
+        .and_then(|data| data.decode_to_vec().ok())
+        .map(|(bytes, _fragment)| bytes)
+        .ok_or_else(|| UriProblem::Data {
+            uri: shortened(uri),
+        })
+}
+
+fn decode_path(uri: &str) -> Result<PathBuf, UriProblem> {
+    let decoded = percent_decode_str(uri)
+        .decode_utf8()
+        .map_err(|_| UriProblem::NotUtf8 {
+            uri: shortened(uri),
+        })?;
+    let path = PathBuf::from(decoded.into_owned());
+    if path.has_root() {
+        return Err(UriProblem::Absolute {
+            uri: shortened(uri),
+        });
+    }
+    Ok(path)
+}
+
+fn shortened(uri: &str) -> String {
+    if uri.chars().count() <= 60 {
+        return uri.to_owned();
+    }
+    uri.chars().take(57).chain("...".chars()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(uri: &str) -> Result<Vec<u8>, ReadError> {
+        read_uri(uri, Path::new("nowhere"), 100, "buffers[0].uri")
+    }
+
+    #[test]
+    fn data_is_decoded() {
+        let uri = "data:application/octet-stream;base64,AQID";
+        assert_eq!(read(uri).unwrap(), [1, 2, 3]);
+        assert_eq!(read("data:,a%20b").unwrap(), b"a b");
+        let error = read("data:;base64,????").unwrap_err().to_string();
+        assert!(error.starts_with("buffers[0].uri: holds \"data:;base64,????\", expected"));
+    }
+
+    #[test]
+    fn what_would_have_to_be_fetched_is_refused_by_name() {
+        assert_eq!(
+            read("https://example.org/a.bin").unwrap_err().to_string(),
+            "buffers[0].uri: refers to \"https://example.org/a.bin\" by the scheme \"https\", \
+             expected a relative path or a data URI"
+        );
+        let error = read("/etc/passwd").unwrap_err().to_string();
+        assert!(error.contains("expected a path relative to the file"));
+    }
+
+    #[test]
+    fn a_path_is_decoded() {
+        assert_eq!(decode_path("a%20b%23.bin"), Ok(PathBuf::from("a b#.bin")));
+        // A colon behind a slash makes no scheme, nor does a leading digit.
+        assert_eq!(scheme("./a:b.bin"), None);
+        assert_eq!(scheme("1:b.bin"), None);
+        assert!(matches!(
+            decode_path("%ff.bin"),
+            Err(UriProblem::NotUtf8 { .. })
+        ));
+        assert!(matches!(read("a.bin"), Err(ReadError::File { path, .. })
+            if path == Path::new("nowhere/a.bin")));
+    }
+
+    #[test]
+    fn a_long_uri_is_shortened_in_messages() {
+        let long = "é".repeat(100);
+        assert_eq!(shortened(&long).chars().count(), 60);
+    }
+}
