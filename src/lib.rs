@@ -1,20 +1,43 @@
 //! Photosurfaces: the apparent shape of fast-moving objects as real geometry.
+//!
+//! An observer who moves near the speed of light receives light *now*. For every point of every object
+//! there is exactly one event on its worldline from which that light came. The places of all these emission
+//! events, in the observer's frame, form a virtual object: the photosurface (Gekelman, Maggs, Xu 1991; Rau,
+//! Weiskopf, Ruder 1998). Seen from the observer's place with an ordinary camera it gives exactly the
+//! relativistic image; seen from anywhere else it explains that image.
+//!
+//! The way through the library: read or build a [`Scene`], get the models of its objects with
+//! [`load_models`], put both on a [`Stage`], take its [`Photosurface`]s, write them with [`write_glb`]. The
+//! mathematics alone is in [`Velocity`], [`Lorentz`], [`PhotosurfaceMap`] and [`View`].
+//!
+//! Conventions: c = 1; lengths and times share one unit; right-handed coordinates, y up; angles in radians.
+//! Everything is computed in `f64`. The *scene frame* is that of the scene; the *rest frame* of an object
+//! moves with it, the *observer's frame* with the observer; the axes of both are those of the scene under a
+//! pure boost.
 
 mod io;
 mod light_cone;
 mod mesh;
+mod photosurface;
+mod scene;
 mod spacetime;
 
 pub use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec4};
 
 pub use io::{
-    AccessorProblem, DocumentProblem, NodeProblem, Note, ObjProblem, ReadError, UriProblem,
-    read_gltf_bytes, read_model,
+    AccessorProblem, DocumentProblem, Export, LoadError, NodeProblem, Note, ObjProblem, ReadError,
+    Report, StageTime, UriProblem, WriteError, check_destination, load_models, read_gltf_bytes,
+    read_model, write_glb, write_gltf, write_ply, write_whole,
 };
-pub use light_cone::PhotosurfaceMap;
+pub use light_cone::{PhotosurfaceMap, View};
 pub use mesh::{
     AlphaMode, Appearance, Cells, Color, Cone, Count, Cuboid, Cylinder, Filter, Grid, Image,
     Lattice, Length, Material, Mesh, MeshError, Model, Part, Rod, Sampler, Shape, ShapeError,
     Sphere, Texture, Torus, Wrap,
+};
+pub use photosurface::{Facts, Photosurface, SceneFacts, Stage, Wanted, step_label};
+pub use scene::{
+    BUILT_IN_SCENES, BuiltInScene, InvalidScene, Object, Observer, Scene, SceneError, Source,
+    even_steps,
 };
 pub use spacetime::{Event, Lorentz, MAX_RAPIDITY, Velocity, VelocityError, WorldLine};

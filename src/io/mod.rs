@@ -1,8 +1,15 @@
-//! Files in.
+//! Files in and out: the one room of the library that touches them.
 
+mod load;
 mod read;
+mod write;
 
+pub use load::{LoadError, load_models};
 pub use read::{
     AccessorProblem, DocumentProblem, NodeProblem, Note, ObjProblem, ReadError, UriProblem,
     read_gltf_bytes, read_model,
+};
+pub use write::{
+    Export, Report, StageTime, WriteError, check_destination, write_glb, write_gltf, write_ply,
+    write_whole,
 };

@@ -160,7 +160,7 @@ impl Mesh {
     }
 
     /// Corners of the triangles, counter-clockwise seen from outside.
-    pub fn triangles(&self) -> &Arc<[[u32; 3]]> {
+    pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
@@ -180,8 +180,8 @@ impl Mesh {
     }
 
     /// Linear colours.
-    pub fn colors(&self) -> Option<&Arc<[Vec4]>> {
-        self.colors.as_ref()
+    pub fn colors(&self) -> Option<&[Vec4]> {
+        self.colors.as_deref()
     }
 
     /// The smallest and the largest corner of the box around the vertices; `None` without vertices.

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use glam::{DAffine3, DVec3};
+
 use super::{Material, Mesh, MeshError};
 
 /// A mesh with its name and material; becomes one photosurface for every step.
@@ -37,6 +39,15 @@ impl Part {
         })
     }
 
+    /// The part moved, turned, scaled or mirrored.
+    #[must_use]
+    pub fn transformed(self, transform: &DAffine3) -> Self {
+        Self {
+            mesh: self.mesh.transformed(transform),
+            ..self
+        }
+    }
+
     /// The geometry.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
@@ -57,6 +68,14 @@ impl Model {
             .iter()
             .map(|part| part.mesh.triangles().len())
             .sum()
+    }
+
+    /// The smallest and the largest corner of the box around all vertices; `None` without vertices.
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        let bounds = self.parts.iter().filter_map(|part| part.mesh.bounds());
+        bounds.reduce(|(low, high), (other_low, other_high)| {
+            (low.min(other_low), high.max(other_high))
+        })
     }
 
     /// How many vertices all parts have together.

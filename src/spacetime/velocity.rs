@@ -45,6 +45,13 @@ pub enum VelocityError {
     Direction(DVec3),
 }
 
+impl Default for Velocity {
+    /// At rest.
+    fn default() -> Self {
+        Self::ZERO
+    }
+}
+
 impl Velocity {
     /// At rest.
     pub const ZERO: Self = Self {

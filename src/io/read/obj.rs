@@ -268,7 +268,7 @@ mod tests {
         let mesh = model.parts[0].mesh();
         assert_eq!(mesh.normals().unwrap(), [DVec3::X, DVec3::Z, DVec3::X]);
         assert_eq!(
-            mesh.texture_coordinates()[0],
+            mesh.texture_coordinates()[0][..],
             [Vec2::new(0.25, 0.75), Vec2::ZERO, Vec2::new(0.25, 0.75)]
         );
         assert_eq!(notes.len(), 2);

@@ -136,7 +136,10 @@ mod tests {
     #[test]
     fn pictures_on_the_upright_sides_stand_upright() {
         let mesh = witness::mesh(&Shape::cuboid([1.0; 3]).unwrap());
-        let vertices = mesh.positions().iter().zip(&mesh.texture_coordinates()[0]);
+        let vertices = mesh
+            .positions()
+            .iter()
+            .zip(mesh.texture_coordinates()[0].iter());
         for ((position, uv), normal) in vertices.zip(mesh.normals().unwrap()) {
             if normal.y == 0.0 {
                 assert!((position.y - (0.5 - f64::from(uv.y))).abs() < 1e-7);

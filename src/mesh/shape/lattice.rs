@@ -267,7 +267,10 @@ mod tests {
     #[test]
     fn a_checker_cell_spans_a_bar_and_fits_between_crossings() {
         let mesh = witness::mesh(&Shape::lattice([2; 3], 1.0, 0.1).unwrap());
-        let vertices = mesh.positions().iter().zip(&mesh.texture_coordinates()[0]);
+        let vertices = mesh
+            .positions()
+            .iter()
+            .zip(mesh.texture_coordinates()[0].iter());
         for ((position, uv), normal) in vertices.zip(mesh.normals().unwrap()) {
             let facing_front = *normal == DVec3::Z;
             // The bar along y in the middle: its edges are edges of a cell, half a repeat.

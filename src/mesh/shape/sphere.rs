@@ -172,7 +172,11 @@ mod tests {
     #[test]
     fn texture_is_longitude_and_latitude() {
         let mesh = witness::mesh(&Shape::sphere(1.0).unwrap());
-        for (position, uv) in mesh.positions().iter().zip(&mesh.texture_coordinates()[0]) {
+        for (position, uv) in mesh
+            .positions()
+            .iter()
+            .zip(mesh.texture_coordinates()[0].iter())
+        {
             let [u, v] = uv.as_dvec2().to_array();
             assert!(
                 (position.y - (PI * v).cos()).abs() < 4e-7,

@@ -1,4 +1,4 @@
-//! Where a point at rest is seen by a moving observer: the photosurface map.
+//! The photosurface map: where a point at rest is seen by one moving observer.
 //!
 //! Everything here is written in two frames. In the *rest frame* of the object, `offset` is a point
 //! minus the observer's position at the moment of observation. The *observer's frame* has the

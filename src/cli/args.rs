@@ -1,0 +1,178 @@
+//! Flags that commands share: what to look at, and how to override what the scene says.
+
+use anyhow::{Context, ensure};
+use clap::Args;
+use photosurface::{DVec3, Length, Observer, Scene, Velocity, even_steps};
+
+/// What to look at.
+#[derive(Debug, Args)]
+pub(super) struct InputArgs {
+    /// A scene file (.json), or a mesh (.glb, .gltf, .obj), or - for either from stdin (JSON or GLB);
+    /// without it the built-in scene "sphere" is taken
+    #[arg(value_name = "SCENE|MESH")]
+    pub(super) input: Option<String>,
+    /// Take a built-in scene; `photosurface example` lists them
+    #[arg(long, value_name = "NAME", conflicts_with = "input")]
+    pub(super) example: Option<String>,
+}
+
+/// Flags that override what the scene says of the observer.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Observer (overrides the scene)")]
+pub(super) struct ObserverArgs {
+    /// Speed of the observer in units of the speed of light, 0 <= B < 1
+    #[arg(long, value_name = "B", group = "speed", allow_negative_numbers = true)]
+    beta: Option<f64>,
+    /// 1 - beta, for speeds that beta cannot say, 0 < D <= 1
+    #[arg(long, value_name = "D", group = "speed", allow_negative_numbers = true)]
+    one_minus_beta: Option<f64>,
+    /// Lorentz factor of the observer, G >= 1
+    #[arg(long, value_name = "G", group = "speed", allow_negative_numbers = true)]
+    gamma: Option<f64>,
+    /// Rapidity of the observer, atanh(beta), from 0 to 350
+    #[arg(long, value_name = "R", group = "speed", allow_negative_numbers = true)]
+    rapidity: Option<f64>,
+    /// Direction of the observer's motion, of any length [default for a mesh: 0,0,-1]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    direction: Option<DVec3>,
+    /// Place of the observation in the scene frame, in scene units [default for a mesh: two diagonals of
+    /// its bounds before its centre, so that the observer moves towards it]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    observer: Option<DVec3>,
+    /// Scene time of the observation, in scene units [default for a mesh: 0]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    time: Option<f64>,
+    /// Proper times of the observer after the observation at which to look: A,B,C or FROM..TO/COUNT
+    /// [default for a mesh: 0]
+    #[arg(long, value_name = "A,B,C|FROM..TO/COUNT", value_parser = steps, allow_hyphen_values = true)]
+    steps: Option<Steps>,
+    /// Radius of a small sphere that marks the observer, in scene units; 0 for none [default for a mesh: 0]
+    #[arg(long, value_name = "R", allow_negative_numbers = true)]
+    marker: Option<f64>,
+}
+
+/// A list of steps as one value of a flag.
+#[derive(Clone, Debug)]
+pub(super) struct Steps(Vec<f64>);
+
+impl ObserverArgs {
+    /// Whether a place for the observer is given.
+    pub(super) fn has_place(&self) -> bool {
+        self.observer.is_some()
+    }
+
+    /// The scene with everything that the flags say.
+    pub(super) fn apply(&self, scene: Scene) -> anyhow::Result<Scene> {
+        let mut observer = *scene.observer();
+        observer.velocity = self.velocity(&observer)?;
+        if let Some(position) = self.observer {
+            observer.position = position;
+        }
+        if let Some(time) = self.time {
+            ensure!(
+                time.is_finite(),
+                "--time is {time}, expected a finite number"
+            );
+            observer.time = time;
+        }
+        if let Some(radius) = self.marker {
+            observer.marker = match radius {
+                0.0 => None,
+                radius => Some(Length::new(radius).context("--marker")?),
+            };
+        }
+        let scene = scene.with_observer(observer);
+        match &self.steps {
+            Some(Steps(steps)) => Ok(scene.with_steps(steps.clone()).context("--steps")?),
+            None => Ok(scene),
+        }
+    }
+
+    fn velocity(&self, observer: &Observer) -> anyhow::Result<Velocity> {
+        let scene = observer.velocity;
+        let direction = self.direction.unwrap_or(scene.direction());
+        if let Some(beta) = self.beta {
+            return Velocity::from_beta(beta, direction).context("--beta");
+        }
+        if let Some(one_minus_beta) = self.one_minus_beta {
+            return Velocity::from_one_minus_beta(one_minus_beta, direction)
+                .context("--one-minus-beta");
+        }
+        if let Some(gamma) = self.gamma {
+            return Velocity::from_gamma(gamma, direction).context("--gamma");
+        }
+        let rapidity = self.rapidity.unwrap_or(scene.rapidity());
+        let flag = if self.rapidity.is_some() {
+            "--rapidity"
+        } else {
+            "--direction"
+        };
+        Velocity::from_rapidity(rapidity, direction).context(flag)
+    }
+}
+
+/// `X,Y,Z`
+fn vector(text: &str) -> anyhow::Result<DVec3> {
+    let numbers = numbers(text)?;
+    let &[x, y, z] = numbers.as_slice() else {
+        anyhow::bail!("{} numbers, expected three: X,Y,Z", numbers.len());
+    };
+    Ok(DVec3::new(x, y, z))
+}
+
+/// `A,B,C` or `FROM..TO/COUNT`
+fn steps(text: &str) -> anyhow::Result<Steps> {
+    let Some((from, rest)) = text.split_once("..") else {
+        return numbers(text).map(Steps);
+    };
+    let (to, count) = rest
+        .split_once('/')
+        .context("no count, expected FROM..TO/COUNT like -6..6/7")?;
+    let count = count.trim();
+    let count = count
+        .parse()
+        .with_context(|| format!("\"{count}\" is no count, expected a whole number"))?;
+    Ok(Steps(even_steps(number(from)?, number(to)?, count)?))
+}
+
+fn numbers(text: &str) -> anyhow::Result<Vec<f64>> {
+    text.split(',').map(number).collect()
+}
+
+fn number(text: &str) -> anyhow::Result<f64> {
+    let text = text.trim();
+    let number: f64 = text
+        .parse()
+        .with_context(|| format!("\"{text}\" is no number"))?;
+    ensure!(number.is_finite(), "{text} is not finite");
+    Ok(number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vectors_and_steps_are_read_as_people_write_them() {
+        assert_eq!(vector("1,-2.5, 3e2").unwrap(), DVec3::new(1.0, -2.5, 300.0));
+        assert!(
+            vector("1,2")
+                .unwrap_err()
+                .to_string()
+                .contains("expected three")
+        );
+        assert!(
+            vector("1,2,x")
+                .unwrap_err()
+                .to_string()
+                .contains("\"x\" is no number")
+        );
+        assert!(vector("1,2,inf").is_err());
+        assert_eq!(steps("-1,0.5").unwrap().0, [-1.0, 0.5]);
+        assert_eq!(steps("-6..6/3").unwrap().0, [-6.0, 0.0, 6.0]);
+        assert_eq!(steps("2").unwrap().0, [2.0]);
+        for wrong in ["", "1..2", "1..2/0", "1..2/x", "1..2/-1", "1,,2"] {
+            assert!(steps(wrong).is_err(), "{wrong}");
+        }
+    }
+}

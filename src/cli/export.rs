@@ -1,0 +1,348 @@
+//! `photosurface export`: photosurfaces as meshes.
+
+use std::fs;
+use std::io::{IsTerminal, stderr, stdout};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::{Context, bail, ensure};
+use indicatif::{ProgressBar, ProgressStyle};
+use photosurface::{
+    Export, Facts, Photosurface, Report, Stage, StageTime, Wanted, check_destination, step_label,
+    write_glb, write_gltf, write_ply, write_whole,
+};
+
+use super::args::{InputArgs, ObserverArgs};
+use super::input::Input;
+use super::messages::{Verbosity, grouped};
+
+/// Write photosurfaces as meshes
+///
+/// Every object, at every step, becomes a mesh of its own in the observer's frame, observer at the origin.
+/// Without SCENE or MESH the built-in scene "sphere" is taken:
+///
+///     photosurface export
+///     photosurface export scene.json -o out.glb
+///     photosurface export bunny.obj --beta 0.9 --steps 0,1,2 -o bunny.glb
+#[derive(Debug, clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(super) struct ExportArgs {
+    #[command(flatten)]
+    input: InputArgs,
+    #[command(flatten)]
+    observer: ObserverArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+    #[command(flatten)]
+    verbosity: Verbosity,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Output")]
+struct OutputArgs {
+    /// Where to write: .glb, .gltf (with a .bin beside it) or .ply (double precision, all in one mesh, the
+    /// Doppler factor as quality); - writes GLB to stdout [default: NAME_photosurface.glb in this directory]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Write a file for each step: out_step000.glb, out_step001.glb, ...
+    #[arg(long)]
+    split: bool,
+    /// Write a JSON report of what was made and how long it took; - for stdout
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+}
+
+/// What a file's name says it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Glb,
+    Gltf,
+    Ply,
+}
+
+pub(super) fn run(args: &ExportArgs) -> anyhow::Result<()> {
+    let output = &args.output;
+    let verbosity = args.verbosity;
+    let format = output.format()?;
+    output.check_streams()?;
+
+    let mut clock = Clock::default();
+    let input = Input::read(&args.input, &args.observer, verbosity)?;
+    let path = output.path(&input.name);
+    let files = output.files(&path, input.scene.steps().len());
+    check_destinations(&files, format, output.report.as_deref(), &input.files)?;
+    let stage = Stage::new(input.scene, input.models);
+    clock.stop("read");
+
+    let progress = progress_bar(&stage, verbosity);
+    let wanted = Wanted {
+        doppler_factors: format == Format::Ply,
+    };
+    let steps = 0..stage.scene().steps().len();
+    let mut made = Vec::new();
+    let mut batch = Vec::new();
+    for step in steps {
+        for photosurface in stage.photosurfaces(step, wanted) {
+            verbosity.detail(describe(&photosurface.facts));
+            made.push(photosurface.facts.clone());
+            batch.push(photosurface);
+            progress.inc(1);
+        }
+        clock.stop("photosurface");
+        // A file for each step is written as soon as it can be, so that memory does not grow with them.
+        if output.split {
+            write_file(&files[step], format, &stage, &std::mem::take(&mut batch))?;
+            clock.stop("write");
+        }
+    }
+    if !output.split {
+        write_file(&path, format, &stage, &batch)?;
+        clock.stop("write");
+    }
+    progress.finish_and_clear();
+
+    for (name, seconds) in &clock.stages {
+        verbosity.detail(format_args!("{name}: {seconds:.3} s"));
+    }
+    if !is_stdout(&path) {
+        verbosity.result(summary(&files, &made)?);
+    }
+    if let Some(report) = &output.report {
+        let stages = clock
+            .stages
+            .into_iter()
+            .map(|(name, seconds)| StageTime { name, seconds });
+        write_report(report, &stage, made, stages.collect())?;
+    }
+    Ok(())
+}
+
+impl OutputArgs {
+    fn format(&self) -> anyhow::Result<Format> {
+        let Some(path) = &self.output else {
+            return Ok(Format::Glb);
+        };
+        if is_stdout(path) {
+            return Ok(Format::Glb);
+        }
+        let extension = path
+            .extension()
+            .map(|extension| extension.to_string_lossy().to_ascii_lowercase());
+        match extension.as_deref() {
+            Some("glb") => Ok(Format::Glb),
+            Some("gltf") => Ok(Format::Gltf),
+            Some("ply") => Ok(Format::Ply),
+            _ => bail!(
+                "{}: unknown extension, expected .glb, .gltf or .ply",
+                path.display()
+            ),
+        }
+    }
+
+    /// Stdout holds one thing.
+    fn check_streams(&self) -> anyhow::Result<()> {
+        let to_stdout = self.output.as_deref().is_some_and(is_stdout);
+        ensure!(
+            !(to_stdout && self.split),
+            "--split writes several files, they cannot all go to stdout"
+        );
+        let report_to_stdout = self.report.as_deref().is_some_and(is_stdout);
+        ensure!(
+            !(to_stdout && report_to_stdout),
+            "-o and --report cannot both go to stdout"
+        );
+        ensure!(
+            !(to_stdout && stdout().is_terminal()),
+            "a GLB is no text for a terminal; send stdout to a file or a pipe"
+        );
+        Ok(())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        match &self.output {
+            Some(path) => path.clone(),
+            None => PathBuf::from(format!("{name}_photosurface.glb")),
+        }
+    }
+
+    /// The files that will be written, one for each step or one for all.
+    fn files(&self, path: &Path, steps: usize) -> Vec<PathBuf> {
+        if !self.split {
+            return vec![path.to_owned()];
+        }
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let extension = path.extension().unwrap_or_default().to_string_lossy();
+        let file = |step| path.with_file_name(format!("{stem}_{}.{extension}", step_label(step)));
+        (0..steps).map(file).collect()
+    }
+}
+
+/// Before any work: every file can be written, and none is one of those that are read.
+fn check_destinations(
+    files: &[PathBuf],
+    format: Format,
+    report: Option<&Path>,
+    read: &[PathBuf],
+) -> anyhow::Result<()> {
+    let read: Vec<_> = read
+        .iter()
+        .filter_map(|file| fs::canonicalize(file).ok())
+        .collect();
+    let binaries = files
+        .iter()
+        .filter(|_| format == Format::Gltf)
+        .map(|file| binary_beside(file));
+    let report = report.map(Path::to_owned);
+    for file in files
+        .iter()
+        .cloned()
+        .chain(binaries)
+        .chain(report)
+        .filter(|file| !is_stdout(file))
+    {
+        check_destination(&file)?;
+        let place = fs::canonicalize(&file);
+        ensure!(
+            !place.is_ok_and(|place| read.contains(&place)),
+            "{}: would be written over what is read from it; choose another name",
+            file.display()
+        );
+    }
+    Ok(())
+}
+
+fn write_file(
+    path: &Path,
+    format: Format,
+    stage: &Stage,
+    photosurfaces: &[Photosurface],
+) -> anyhow::Result<()> {
+    let scene = stage.facts();
+    let export = Export {
+        scene: &scene,
+        marker: stage.marker(),
+        photosurfaces,
+    };
+    if is_stdout(path) {
+        write_glb(&export, stdout().lock()).context("stdout")?;
+        return Ok(());
+    }
+    match format {
+        Format::Glb => write_whole(path, |writer| write_glb(&export, writer))?,
+        Format::Ply => write_whole(path, |writer| write_ply(&export, writer))?,
+        Format::Gltf => {
+            let binary = binary_beside(path);
+            let name = binary
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
+            // The data first: a .gltf never stands there without it.
+            write_whole(path, |json_writer| {
+                write_whole(&binary, |binary_writer| {
+                    write_gltf(&export, &name, json_writer, binary_writer)
+                })
+            })?;
+        }
+    }
+    Ok(())
+}
+
+fn write_report(
+    path: &Path,
+    stage: &Stage,
+    made: Vec<Facts>,
+    stages: Vec<StageTime>,
+) -> anyhow::Result<()> {
+    let report = Report {
+        scene: stage.facts(),
+        objects: made,
+        stages,
+    };
+    let text = report.to_json() + "\n";
+    let write = |writer: &mut dyn std::io::Write| Ok(writer.write_all(text.as_bytes())?);
+    if is_stdout(path) {
+        write(&mut stdout().lock())?;
+    } else {
+        write_whole(path, write)?;
+    }
+    Ok(())
+}
+
+fn summary(files: &[PathBuf], made: &[Facts]) -> anyhow::Result<String> {
+    let triangles: usize = made.iter().map(|facts| facts.triangles).sum();
+    let mut bytes = 0;
+    for file in files {
+        bytes += fs::metadata(file)
+            .with_context(|| file.display().to_string())?
+            .len();
+    }
+    let place = match files {
+        [file] => file.display().to_string(),
+        [first, .., last] => format!("{} to {}", first.display(), last.display()),
+        [] => unreachable!("a scene has at least one step"),
+    };
+    Ok(format!(
+        "{place}: {} photosurface{}, {} triangles, {:.1} MB",
+        grouped(made.len()),
+        if made.len() == 1 { "" } else { "s" },
+        grouped(triangles),
+        bytes as f64 / 1e6
+    ))
+}
+
+fn describe(facts: &Facts) -> String {
+    format!(
+        "{}: proper time {}, gamma {:.6}, {} triangles",
+        facts.name,
+        facts.proper_time,
+        facts.relative_gamma,
+        grouped(facts.triangles)
+    )
+}
+
+fn progress_bar(stage: &Stage, verbosity: Verbosity) -> ProgressBar {
+    if verbosity.is_quiet() || !stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let parts: usize = stage.objects().map(|(_, parts)| parts.len()).sum();
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} photosurfaces {eta}")
+        .expect("the template is well-formed");
+    ProgressBar::new((parts * stage.scene().steps().len()) as u64).with_style(style)
+}
+
+fn binary_beside(path: &Path) -> PathBuf {
+    path.with_extension("bin")
+}
+
+fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Wall-clock time of each stage, those of one name added up.
+struct Clock {
+    last: Instant,
+    stages: Vec<(&'static str, f64)>,
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self {
+            last: Instant::now(),
+            stages: Vec::new(),
+        }
+    }
+}
+
+impl Clock {
+    /// What went on since the last call, or since the beginning, was `name`.
+    fn stop(&mut self, name: &'static str) {
+        let now = Instant::now();
+        let seconds = (now - self.last).as_secs_f64();
+        self.last = now;
+        match self.stages.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, sum)) => *sum += seconds,
+            None => self.stages.push((name, seconds)),
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! From the command line's input to a scene with its models: files, stdin, built-in scenes, bare meshes.
+
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use photosurface::{
+    BUILT_IN_SCENES, DVec3, Model, Note, Object, Observer, Scene, Source, load_models,
+    read_gltf_bytes, read_model,
+};
+
+use super::args::{InputArgs, ObserverArgs};
+use super::example::built_in;
+use super::messages::Verbosity;
+
+/// Beyond its centre, by how many diagonals of a bare mesh's bounds the observer stands off.
+const STAND_OFF: f64 = 2.0;
+
+/// A scene with its models and where they came from.
+#[derive(Debug)]
+pub(super) struct Input {
+    /// What to call it: `bunny` of `bunny.obj`.
+    pub(super) name: String,
+    /// The scene with everything that the flags say.
+    pub(super) scene: Scene,
+    /// One for each object of the scene.
+    pub(super) models: Vec<Model>,
+    /// The files it was read from, for they must not be written over.
+    pub(super) files: Vec<PathBuf>,
+}
+
+impl Input {
+    /// Reads what the command line names, and tells the user what there is to know about it.
+    pub(super) fn read(
+        input: &InputArgs,
+        observer: &ObserverArgs,
+        verbosity: Verbosity,
+    ) -> anyhow::Result<Self> {
+        match input.input.as_deref() {
+            None => {
+                let name = input.example.as_deref().unwrap_or(BUILT_IN_SCENES[0].name);
+                let scene =
+                    Scene::from_json(built_in(name)?.json).expect("built-in scenes are tested");
+                Self::from_scene(name, scene, None, observer, verbosity)
+            }
+            Some("-") => {
+                let mut bytes = Vec::new();
+                std::io::stdin()
+                    .lock()
+                    .read_to_end(&mut bytes)
+                    .context("stdin")?;
+                if bytes.starts_with(b"glTF") {
+                    let (model, notes) = read_gltf_bytes(&bytes, Path::new("")).context("stdin")?;
+                    return Self::from_mesh("mesh", model, &notes, None, observer, verbosity);
+                }
+                let text = String::from_utf8(bytes).context("stdin is neither a GLB nor text")?;
+                let scene = Scene::from_json(&text).context("stdin")?;
+                Self::from_scene("scene", scene, None, observer, verbosity)
+            }
+            Some(path) => Self::from_path(Path::new(path), observer, verbosity),
+        }
+    }
+
+    fn from_path(
+        path: &Path,
+        observer: &ObserverArgs,
+        verbosity: Verbosity,
+    ) -> anyhow::Result<Self> {
+        let place = path.display().to_string();
+        let name = path
+            .file_stem()
+            .map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
+        let extension = path
+            .extension()
+            .map(|extension| extension.to_string_lossy().to_ascii_lowercase());
+        match extension.as_deref() {
+            Some("json") => {
+                let text = fs::read_to_string(path).with_context(|| place.clone())?;
+                let scene = Scene::from_json(&text).with_context(|| place)?;
+                Self::from_scene(&name, scene, Some(path), observer, verbosity)
+            }
+            Some("glb" | "gltf" | "obj") => {
+                let (model, notes) = read_model(path).with_context(|| place)?;
+                Self::from_mesh(&name, model, &notes, Some(path), observer, verbosity)
+            }
+            _ => bail!(
+                "{place}: unknown extension, expected a scene (.json) or a mesh (.glb, .gltf, .obj)"
+            ),
+        }
+    }
+
+    fn from_scene(
+        name: &str,
+        scene: Scene,
+        path: Option<&Path>,
+        observer: &ObserverArgs,
+        verbosity: Verbosity,
+    ) -> anyhow::Result<Self> {
+        let scene = observer.apply(scene)?;
+        let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
+        let (models, notes) = load_models(&scene, directory)?;
+        for (file, note) in notes {
+            verbosity.note(format_args!("{}: {note}", file.display()));
+        }
+        let referenced = scene
+            .objects()
+            .iter()
+            .filter_map(|object| match &object.source {
+                Source::File(file) => Some(directory.join(file)),
+                Source::Shape(..) | Source::Model(_) => None,
+            });
+        Ok(Self {
+            name: name.to_owned(),
+            files: path
+                .map(Path::to_owned)
+                .into_iter()
+                .chain(referenced)
+                .collect(),
+            models,
+            scene,
+        })
+    }
+
+    /// A bare mesh, at rest at the origin; the observer, unless placed, moves towards it.
+    fn from_mesh(
+        name: &str,
+        model: Model,
+        notes: &[Note],
+        path: Option<&Path>,
+        flags: &ObserverArgs,
+        verbosity: Verbosity,
+    ) -> anyhow::Result<Self> {
+        for note in notes {
+            let place = path.map_or("stdin".into(), |path| path.display().to_string());
+            verbosity.note(format_args!("{place}: {note}"));
+        }
+        let source = Source::File(path.unwrap_or(Path::new("-")).to_owned());
+        let scene = Scene::new(Observer::default(), vec![Object::new(name, source)])?;
+        let mut scene = flags.apply(scene)?;
+        if !flags.has_place() {
+            let observer = *scene.observer();
+            let position = stand_off(&model, observer.velocity.direction());
+            scene = scene.with_observer(Observer {
+                position,
+                ..observer
+            });
+        }
+        Ok(Self {
+            name: name.to_owned(),
+            scene,
+            models: vec![model],
+            files: path.map(Path::to_owned).into_iter().collect(),
+        })
+    }
+}
+
+/// Two diagonals of the bounds before the middle of the model.
+fn stand_off(model: &Model, direction: DVec3) -> DVec3 {
+    let Some((low, high)) = model.bounds() else {
+        return DVec3::ZERO;
+    };
+    0.5 * (low + high) - direction * (STAND_OFF * (high - low).length())
+}

@@ -1,0 +1,71 @@
+//! What the user is told, on stderr.
+#![allow(clippy::print_stderr)] // The one place that prints.
+
+use std::fmt::Display;
+
+/// How much the user wants to be told.
+#[derive(Clone, Copy, Debug, Default, clap::Args)]
+#[command(next_help_heading = "Messages")]
+pub(super) struct Verbosity {
+    /// Say nothing but errors
+    #[arg(short, long, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Say more: every photosurface, and how long each stage took
+    #[arg(short, long)]
+    verbose: bool,
+}
+
+impl Verbosity {
+    /// Whether progress and results are told at all.
+    pub(super) fn is_quiet(self) -> bool {
+        self.quiet
+    }
+
+    /// Something the user should know about the input.
+    pub(super) fn note(self, note: impl Display) {
+        if !self.quiet {
+            eprintln!("note: {note}");
+        }
+    }
+
+    /// What was done.
+    pub(super) fn result(self, result: impl Display) {
+        if !self.quiet {
+            eprintln!("{result}");
+        }
+    }
+
+    /// What only the curious want to know.
+    pub(super) fn detail(self, detail: impl Display) {
+        if self.verbose {
+            eprintln!("{detail}");
+        }
+    }
+}
+
+/// One error with its causes, in one line.
+pub(super) fn error(error: &anyhow::Error) {
+    eprintln!("error: {error:#}");
+}
+
+/// A count with its thousands set off, as people read it.
+pub(super) fn grouped(count: usize) -> String {
+    let digits = count.to_string();
+    let mut text = String::with_capacity(digits.len() * 4 / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn thousands_are_set_off() {
+        let texts: Vec<_> = [0, 999, 1000, 75730, 1234567].map(super::grouped).into();
+        assert_eq!(texts, ["0", "999", "1,000", "75,730", "1,234,567"]);
+    }
+}

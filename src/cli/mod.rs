@@ -1,0 +1,77 @@
+//! The command line: one file per command, and what they share.
+
+mod args;
+mod check;
+mod example;
+mod export;
+mod input;
+mod messages;
+mod schema;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Exit status of an error: nothing was written.
+const ERROR: u8 = 2;
+
+/// The apparent shape of fast-moving objects as real geometry.
+///
+/// An observer who moves near the speed of light receives light now. The places where that light was
+/// emitted, in the observer's frame, form a virtual object: the photosurface. photosurface computes it from
+/// ordinary meshes and writes it as glTF for Blender, MeshLab, three.js, trimesh and pyvista.
+///
+/// Units: the speed of light is 1; lengths and times share one unit. Coordinates are right-handed, y up.
+/// Results go to files, or to stdout with -o -; everything else goes to stderr.
+/// Exit status: 0 done, 2 an error, nothing written.
+#[derive(Debug, Parser)]
+#[command(name = "photosurface", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Export(export::ExportArgs),
+    Check(check::CheckArgs),
+    Example(example::ExampleArgs),
+    Schema(schema::SchemaArgs),
+}
+
+/// Runs the command line of this process.
+pub(crate) fn run() -> ExitCode {
+    let cli = Cli::parse();
+    let done = match cli.command {
+        Command::Export(args) => export::run(&args),
+        Command::Check(args) => check::run(&args),
+        Command::Example(args) => example::run(&args),
+        Command::Schema(args) => schema::run(&args),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            messages::error(&error);
+            ExitCode::from(ERROR)
+        }
+    }
+}
+
+/// Whoever read our stdout has seen enough (`photosurface example sphere | head`).
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| {
+        let io = cause.downcast_ref::<std::io::Error>();
+        io.is_some_and(|io| io.kind() == std::io::ErrorKind::BrokenPipe)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        super::Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,75 @@
+//! The geometry of a scene's objects: files are read, shapes are made.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use super::read::{Note, ReadError, read_model};
+use crate::mesh::{Model, ShapeError};
+use crate::scene::{Scene, Source};
+
+/// Why an object has no geometry.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// Its file cannot be read.
+    #[error("object \"{object}\": {}", path.display())]
+    File {
+        /// Which object.
+        object: String,
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: ReadError,
+    },
+    /// Its shape cannot be made.
+    #[error("object \"{object}\"")]
+    Shape {
+        /// Which object.
+        object: String,
+        /// What is wrong with it.
+        source: ShapeError,
+    },
+}
+
+/// One model for each object of a scene, in their order, and what there is to know about the files; file
+/// names are relative to `directory`. A file that several objects use is read once.
+///
+/// # Errors
+///
+/// The first file that cannot be read, or shape that cannot be made.
+pub fn load_models(
+    scene: &Scene,
+    directory: &Path,
+) -> Result<(Vec<Model>, Vec<(PathBuf, Note)>), LoadError> {
+    let mut known: HashMap<PathBuf, Model> = HashMap::new();
+    let mut notes = Vec::new();
+    let mut models = Vec::with_capacity(scene.objects().len());
+    for object in scene.objects() {
+        let model = match &object.source {
+            Source::File(file) => {
+                let path = directory.join(file);
+                if !known.contains_key(&path) {
+                    let (model, found) = read_model(&path).map_err(|source| LoadError::File {
+                        object: object.name.clone(),
+                        path: path.clone(),
+                        source,
+                    })?;
+                    notes.extend(found.into_iter().map(|note| (path.clone(), note)));
+                    known.insert(path.clone(), model);
+                }
+                known[&path].clone()
+            }
+            Source::Shape(shape, appearance) => {
+                shape.model(appearance).map_err(|source| LoadError::Shape {
+                    object: object.name.clone(),
+                    source,
+                })?
+            }
+            Source::Model(model) => Model::clone(model),
+        };
+        models.push(model);
+    }
+    Ok((models, notes))
+}

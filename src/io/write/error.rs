@@ -1,0 +1,58 @@
+//! Why photosurfaces do not make a file.
+
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// Why photosurfaces do not make a file.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// A mesh without vertices or triangles.
+    #[error("the photosurface \"{0}\" has no triangles, expected at least one")]
+    Empty(String),
+    /// A number beyond the range of the file's `f32`.
+    #[error(
+        "{quantity} of vertex {vertex} of the photosurface \"{name}\" is {value:e}, beyond what 32-bit \
+         numbers of a file hold ({limit:e}); choose a smaller rapidity, or a smaller unit of length"
+    )]
+    Range {
+        /// Which photosurface.
+        name: String,
+        /// Which number.
+        quantity: &'static str,
+        /// Which vertex, from 0.
+        vertex: usize,
+        /// The number.
+        value: f64,
+        /// The limit that it is beyond.
+        limit: f64,
+    },
+    /// More bytes than the format can say.
+    #[error(
+        "the file would have {bytes} bytes, {format} can have at most {limit}; write the steps to files of their own"
+    )]
+    TooLarge {
+        /// Which format.
+        format: &'static str,
+        /// How many bytes it would have.
+        bytes: u64,
+        /// How many it can have.
+        limit: u64,
+    },
+    /// More vertices in one file than a `u32` index can tell apart.
+    #[error("the file would have {0} vertices, expected at most {max}; write the steps to files of their own", max = u32::MAX)]
+    TooManyVertices(usize),
+    /// The operating system says no.
+    #[error("cannot write {}", path.display())]
+    Io {
+        /// Which file.
+        path: PathBuf,
+        /// What it says.
+        source: io::Error,
+    },
+    /// The operating system says no to a stream.
+    #[error("cannot write")]
+    Stream(#[from] io::Error),
+}

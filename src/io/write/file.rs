@@ -1,0 +1,175 @@
+//! Files that appear whole or not at all: written beside their place, then renamed.
+
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::{Builder, NamedTempFile};
+
+use super::WriteError;
+
+/// Says whether `path` could be written, without touching what may stand there: to be asked before long
+/// work is begun.
+///
+/// # Errors
+///
+/// The directory does not exist or cannot be written to, or `path` is a directory.
+pub fn check_destination(path: &Path) -> Result<(), WriteError> {
+    match Destination::of(path)? {
+        Destination::Special(_) => Ok(()),
+        Destination::Regular(place) => temporary_beside(&place).map(drop),
+    }
+    .map_err(|source| io_error(path, source))
+}
+
+/// Writes a file with `content`; it appears whole or not at all, and what stood there is kept until then.
+///
+/// A link is followed; what is no regular file (a device, a pipe) is written to as it is.
+///
+/// # Errors
+///
+/// The file cannot be written, or `content` fails.
+pub fn write_whole(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
+) -> Result<(), WriteError> {
+    match Destination::of(path)? {
+        Destination::Special(place) => {
+            let file = File::options()
+                .write(true)
+                .open(place)
+                .map_err(|source| io_error(path, source))?;
+            fill(file, path, content).map(drop)
+        }
+        Destination::Regular(place) => {
+            let file = temporary_beside(&place).map_err(|source| io_error(path, source))?;
+            let file = fill(file, path, content)?;
+            file.persist(&place)
+                .map(drop)
+                .map_err(|error| io_error(path, error.error))
+        }
+    }
+}
+
+enum Destination {
+    /// A file that is there or can be made, links followed.
+    Regular(PathBuf),
+    /// Something else that can be written to.
+    Special(PathBuf),
+}
+
+impl Destination {
+    fn of(path: &Path) -> Result<Self, WriteError> {
+        match fs::canonicalize(path) {
+            Ok(place) => {
+                let kind = fs::metadata(&place)
+                    .map_err(|source| io_error(path, source))?
+                    .file_type();
+                if kind.is_dir() {
+                    let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
+                    return Err(io_error(path, source));
+                }
+                Ok(if kind.is_file() {
+                    Self::Regular(place)
+                } else {
+                    Self::Special(place)
+                })
+            }
+            Err(_) => Ok(Self::Regular(path.to_owned())),
+        }
+    }
+}
+
+fn temporary_beside(place: &Path) -> std::io::Result<NamedTempFile> {
+    let directory = match place.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    };
+    let mut builder = Builder::new();
+    builder.prefix(".photosurface-");
+    #[cfg(unix)]
+    {
+        // The permissions of any new file; tempfile's own are for the owner alone.
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(directory)
+}
+
+fn fill<F: Write>(
+    file: F,
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
+) -> Result<F, WriteError> {
+    let mut writer = BufWriter::new(file);
+    content(&mut writer).map_err(|error| match error {
+        WriteError::Stream(source) => io_error(path, source),
+        other => other,
+    })?;
+    writer
+        .into_inner()
+        .map_err(|error| io_error(path, error.into_error()))
+}
+
+fn io_error(path: &Path, source: std::io::Error) -> WriteError {
+    WriteError::Io {
+        path: path.to_owned(),
+        source,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_write_leaves_what_was_there() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.glb");
+        fs::write(&path, "old").unwrap();
+        let failed = write_whole(&path, |writer| {
+            writer.write_all(b"half")?;
+            Err(WriteError::Empty("x".into()))
+        });
+        assert!(matches!(failed, Err(WriteError::Empty(_))));
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(
+            fs::read_dir(directory.path()).unwrap().count(),
+            1,
+            "nothing is left beside it"
+        );
+
+        write_whole(&path, |writer| Ok(writer.write_all(b"new")?)).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+        assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_and_new_files_have_ordinary_permissions() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let directory = tempfile::tempdir().unwrap();
+        let (real, link) = (directory.path().join("real"), directory.path().join("link"));
+        let plain = directory.path().join("plain");
+        fs::write(&real, "old").unwrap();
+        fs::write(&plain, "").unwrap();
+        symlink(&real, &link).unwrap();
+        write_whole(&link, |writer| Ok(writer.write_all(b"new")?)).unwrap();
+        assert_eq!(fs::read(&real).unwrap(), b"new");
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&real), mode(&plain));
+    }
+
+    #[test]
+    fn a_place_that_cannot_be_written_is_named_before_work_begins() {
+        let directory = tempfile::tempdir().unwrap();
+        let missing = directory.path().join("no/such/place.glb");
+        let message = check_destination(&missing).unwrap_err().to_string();
+        assert!(message.contains("place.glb"), "{message}");
+        assert!(check_destination(directory.path()).is_err());
+        let fine = directory.path().join("fine.glb");
+        check_destination(&fine).unwrap();
+        assert!(!fine.exists());
+    }
+}

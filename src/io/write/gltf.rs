@@ -1,0 +1,501 @@
+//! Core glTF 2.0: one node, one mesh, one primitive for each photosurface.
+//!
+//! Plain accessors, u32 indices, flat node tree, translations only: what Blender, MeshLab, trimesh,
+//! pyvista and three.js all read alike. Data shared between steps (triangles, texture coordinates,
+//! colours, materials, images) is written once.
+
+use std::collections::HashMap;
+use std::io::Write;
+use std::sync::Arc;
+
+use glam::DVec3;
+use gltf::binary::{Glb, Header};
+use gltf::json::validation::{Checked, USize64};
+use gltf::json::{self, Index, accessor, buffer, extras::RawValue, mesh::Semantic};
+use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::pack::{Packed, pack};
+use super::{Export, WriteError};
+use crate::mesh::{AlphaMode, Filter, Image, Material, Mesh, Sampler, Texture, Wrap};
+
+/// What may not stand in a relative reference as it is.
+const IN_REFERENCE: &AsciiSet = &CONTROLS
+    .add(b' ')
+    .add(b'"')
+    .add(b'#')
+    .add(b'%')
+    .add(b':')
+    .add(b'<')
+    .add(b'>')
+    .add(b'?')
+    .add(b'\\');
+
+/// Writes one GLB.
+///
+/// # Errors
+///
+/// A mesh without triangles, a number that `f32` cannot hold, more than 4 GiB, or the writer fails.
+pub fn write_glb(export: &Export<'_>, writer: impl Write) -> Result<(), WriteError> {
+    let (json, binary) = document(export, None)?;
+    let json = serde_json::to_vec(&json).expect("glTF is JSON");
+    let padded = |chunk: &[u8]| chunk.len().next_multiple_of(4) as u64;
+    let bytes = 12 + 8 + padded(&json) + 8 + padded(&binary);
+    if bytes > u64::from(u32::MAX) {
+        return Err(WriteError::TooLarge {
+            format: "GLB",
+            bytes,
+            limit: u64::from(u32::MAX),
+        });
+    }
+    let glb = Glb {
+        // Made anew by `to_writer`.
+        header: Header {
+            magic: *b"glTF",
+            version: 2,
+            length: 0,
+        },
+        json: json.into(),
+        bin: Some(binary.into()),
+    };
+    glb.to_writer(writer).map_err(|error| match error {
+        gltf::Error::Io(error) => WriteError::Stream(error),
+        other => unreachable!("writing only fails with the writer: {other}"),
+    })
+}
+
+/// Writes the two parts of a `.gltf` with its data in a file beside it, called `binary_name`.
+///
+/// # Errors
+///
+/// As [`write_glb`].
+pub fn write_gltf(
+    export: &Export<'_>,
+    binary_name: &str,
+    mut json_writer: impl Write,
+    mut binary_writer: impl Write,
+) -> Result<(), WriteError> {
+    let (json, binary) = document(export, Some(binary_name))?;
+    binary_writer.write_all(&binary)?;
+    let json = serde_json::to_vec_pretty(&json).expect("glTF is JSON");
+    json_writer.write_all(&json)?;
+    json_writer.write_all(b"\n")?;
+    Ok(())
+}
+
+/// The JSON part and the data of a file.
+fn document(
+    export: &Export<'_>,
+    binary_name: Option<&str>,
+) -> Result<(Value, Vec<u8>), WriteError> {
+    let mut document = Document::default();
+    if let Some(marker) = export.marker {
+        document.add(&marker.name, marker.mesh(), marker.material.as_ref(), None)?;
+    }
+    for photosurface in export.photosurfaces {
+        let extras = Some(raw(&photosurface.facts));
+        let material = photosurface.material.as_ref();
+        document.add(
+            &photosurface.facts.name,
+            &photosurface.mesh,
+            material,
+            extras,
+        )?;
+    }
+    Ok(document.finish(export, binary_name))
+}
+
+/// A glTF document in the making.
+#[derive(Default)]
+struct Document {
+    root: json::Root,
+    binary: Vec<u8>,
+    /// The `f64` translation of each node; glTF's JSON holds it, `gltf::json` does not.
+    translations: Vec<DVec3>,
+    /// What has been written already, by the address of the shared original.
+    shared: HashMap<usize, Index<json::Accessor>>,
+    materials: HashMap<usize, Index<json::Material>>,
+    images: HashMap<usize, Index<json::Image>>,
+    samplers: Vec<Sampler>,
+    textures: Vec<(Index<json::Image>, Index<json::texture::Sampler>)>,
+    default_material: Option<Index<json::Material>>,
+}
+
+impl Document {
+    fn add(
+        &mut self,
+        name: &str,
+        mesh: &Mesh,
+        material: Option<&Arc<Material>>,
+        extras: json::Extras,
+    ) -> Result<(), WriteError> {
+        if mesh.triangles().is_empty() {
+            return Err(WriteError::Empty(name.to_owned()));
+        }
+        let Packed {
+            offset,
+            local,
+            min,
+            max,
+        } = pack(name, mesh.positions())?;
+        let positions = self.accessor(&local, accessor::Type::Vec3, Some((min, max)));
+        let mut attributes = vec![(Semantic::Positions, positions)];
+        if let Some(normals) = mesh.normals() {
+            let normals: Vec<[f32; 3]> = normals
+                .iter()
+                .map(|normal| unit_or_up(*normal).as_vec3().to_array())
+                .collect();
+            attributes.push((
+                Semantic::Normals,
+                self.accessor(&normals, accessor::Type::Vec3, None),
+            ));
+        }
+        if let Some(tangents) = mesh.tangents() {
+            let tangents: Vec<[f32; 4]> = tangents
+                .iter()
+                .map(|tangent| {
+                    unit_or_up(tangent.truncate())
+                        .extend(tangent.w)
+                        .as_vec4()
+                        .to_array()
+                })
+                .collect();
+            attributes.push((
+                Semantic::Tangents,
+                self.accessor(&tangents, accessor::Type::Vec4, None),
+            ));
+        }
+        for (set, coordinates) in (0..).zip(mesh.texture_coordinates()) {
+            let accessor = self.shared(address(coordinates), |document| {
+                let values: Vec<[f32; 2]> = coordinates.iter().map(|c| c.to_array()).collect();
+                document.accessor(&values, accessor::Type::Vec2, None)
+            });
+            attributes.push((Semantic::TexCoords(set), accessor));
+        }
+        if let Some(colors) = mesh.colors() {
+            let accessor = self.shared(address(colors), |document| {
+                let bytes: Vec<u8> = colors
+                    .iter()
+                    .flat_map(|color| color.to_array().map(to_u8))
+                    .collect();
+                let view = document.view(&bytes, Some(buffer::Target::ArrayBuffer));
+                let kind = (accessor::ComponentType::U8, accessor::Type::Vec4);
+                document.push_accessor(view, colors.len(), kind, true, None)
+            });
+            attributes.push((Semantic::Colors(0), accessor));
+        }
+        let triangles = mesh.triangles();
+        let indices = self.shared(address(triangles), |document| {
+            let bytes: Vec<u8> = triangles
+                .as_flattened()
+                .iter()
+                .flat_map(|index| index.to_le_bytes())
+                .collect();
+            let view = document.view(&bytes, Some(buffer::Target::ElementArrayBuffer));
+            let kind = (accessor::ComponentType::U32, accessor::Type::Scalar);
+            document.push_accessor(view, 3 * triangles.len(), kind, false, None)
+        });
+        let material = match material {
+            Some(material) => self.material(material),
+            None => self.default_material(),
+        };
+        let primitive = json::mesh::Primitive {
+            attributes: attributes
+                .into_iter()
+                .map(|(key, value)| (Checked::Valid(key), value))
+                .collect(),
+            extensions: None,
+            extras: None,
+            indices: Some(indices),
+            material: Some(material),
+            mode: Checked::Valid(json::mesh::Mode::Triangles),
+            targets: None,
+        };
+        let mesh = self.root.push(json::Mesh {
+            extensions: None,
+            extras: None,
+            name: Some(name.to_owned()),
+            primitives: vec![primitive],
+            weights: None,
+        });
+        self.root.push(json::Node {
+            mesh: Some(mesh),
+            name: Some(name.to_owned()),
+            extras,
+            ..json::Node::default()
+        });
+        self.translations.push(offset);
+        Ok(())
+    }
+
+    fn finish(mut self, export: &Export<'_>, binary_name: Option<&str>) -> (Value, Vec<u8>) {
+        self.root.asset.generator = Some(export.scene.generator.to_owned());
+        self.root.push(json::Buffer {
+            byte_length: USize64::from(self.binary.len()),
+            name: None,
+            uri: binary_name.map(|name| utf8_percent_encode(name, IN_REFERENCE).to_string()),
+            extensions: None,
+            extras: None,
+        });
+        let scene = self.root.push(json::Scene {
+            extensions: None,
+            extras: Some(raw(export.scene)),
+            name: export.scene.title.clone(),
+            nodes: (0..self.root.nodes.len() as u32).map(Index::new).collect(),
+        });
+        self.root.scene = Some(scene);
+        let mut root = serde_json::to_value(&self.root).expect("glTF is JSON");
+        for (node, offset) in self.translations.iter().enumerate() {
+            if *offset != DVec3::ZERO {
+                root["nodes"][node]["translation"] = json!(offset.to_array());
+            }
+        }
+        (root, self.binary)
+    }
+
+    /// Writes what `make` makes once for all who share it.
+    fn shared(
+        &mut self,
+        address: usize,
+        make: impl FnOnce(&mut Self) -> Index<json::Accessor>,
+    ) -> Index<json::Accessor> {
+        if let Some(&accessor) = self.shared.get(&address) {
+            return accessor;
+        }
+        let accessor = make(self);
+        self.shared.insert(address, accessor);
+        accessor
+    }
+
+    fn accessor<const N: usize>(
+        &mut self,
+        values: &[[f32; N]],
+        shape: accessor::Type,
+        bounds: Option<([f32; N], [f32; N])>,
+    ) -> Index<json::Accessor> {
+        let bytes: Vec<u8> = values
+            .as_flattened()
+            .iter()
+            .flat_map(|value| value.to_le_bytes())
+            .collect();
+        let view = self.view(&bytes, Some(buffer::Target::ArrayBuffer));
+        let bounds = bounds.map(|(min, max)| (min.to_vec(), max.to_vec()));
+        self.push_accessor(
+            view,
+            values.len(),
+            (accessor::ComponentType::F32, shape),
+            false,
+            bounds,
+        )
+    }
+
+    fn push_accessor(
+        &mut self,
+        view: Index<buffer::View>,
+        count: usize,
+        (component, shape): (accessor::ComponentType, accessor::Type),
+        normalized: bool,
+        bounds: Option<(Vec<f32>, Vec<f32>)>,
+    ) -> Index<json::Accessor> {
+        let (min, max) = bounds.unzip();
+        self.root.push(json::Accessor {
+            buffer_view: Some(view),
+            byte_offset: None,
+            count: USize64::from(count),
+            component_type: Checked::Valid(accessor::GenericComponentType(component)),
+            extensions: None,
+            extras: None,
+            type_: Checked::Valid(shape),
+            // f32 as f64 prints every digit that tells it apart, so that bounds read back exactly.
+            min: min.map(|min| json!(min)),
+            max: max.map(|max| json!(max)),
+            name: None,
+            normalized,
+            sparse: None,
+        })
+    }
+
+    fn view(&mut self, bytes: &[u8], target: Option<buffer::Target>) -> Index<buffer::View> {
+        // Every view starts at a multiple of four, whatever an image's length.
+        self.binary.resize(self.binary.len().next_multiple_of(4), 0);
+        let offset = self.binary.len();
+        self.binary.extend_from_slice(bytes);
+        self.root.push(buffer::View {
+            buffer: Index::new(0),
+            byte_length: USize64::from(bytes.len()),
+            byte_offset: Some(USize64::from(offset)),
+            byte_stride: None,
+            name: None,
+            target: target.map(Checked::Valid),
+            extensions: None,
+            extras: None,
+        })
+    }
+
+    fn material(&mut self, material: &Arc<Material>) -> Index<json::Material> {
+        let address = Arc::as_ptr(material) as usize;
+        if let Some(&index) = self.materials.get(&address) {
+            return index;
+        }
+        let texture = material.base_color_texture.as_ref();
+        let texture = texture.map(|texture| self.texture(texture));
+        let (alpha_mode, alpha_cutoff) = match material.alpha_mode {
+            AlphaMode::Opaque => (json::material::AlphaMode::Opaque, None),
+            AlphaMode::Mask(cutoff) => (
+                json::material::AlphaMode::Mask,
+                Some(json::material::AlphaCutoff(cutoff)),
+            ),
+            AlphaMode::Blend => (json::material::AlphaMode::Blend, None),
+        };
+        let index = self.root.push(json::Material {
+            name: material.name.clone(),
+            alpha_mode: Checked::Valid(alpha_mode),
+            alpha_cutoff,
+            double_sided: material.double_sided,
+            pbr_metallic_roughness: json::material::PbrMetallicRoughness {
+                base_color_factor: json::material::PbrBaseColorFactor(material.base_color),
+                base_color_texture: texture,
+                metallic_factor: json::material::StrengthFactor(material.metallic),
+                roughness_factor: json::material::StrengthFactor(material.roughness),
+                ..Default::default()
+            },
+            ..Default::default()
+        });
+        self.materials.insert(address, index);
+        index
+    }
+
+    /// For sources without a material: seen from both sides, for some programs would hide the back.
+    fn default_material(&mut self) -> Index<json::Material> {
+        if let Some(index) = self.default_material {
+            return index;
+        }
+        let material = Arc::new(Material {
+            metallic: 0.0,
+            double_sided: true,
+            ..Material::default()
+        });
+        let index = self.material(&material);
+        // Its address may be that of another material once it is gone.
+        self.materials.remove(&(Arc::as_ptr(&material) as usize));
+        self.default_material = Some(index);
+        index
+    }
+
+    fn texture(&mut self, texture: &Texture) -> json::texture::Info {
+        let image = self.image(&texture.image);
+        let sampler = self.sampler(texture.sampler);
+        let known = self
+            .textures
+            .iter()
+            .position(|&known| known == (image, sampler));
+        let index = known.unwrap_or_else(|| {
+            self.textures.push((image, sampler));
+            self.root.push(json::Texture {
+                name: None,
+                sampler: Some(sampler),
+                source: image,
+                extensions: None,
+                extras: None,
+            });
+            self.textures.len() - 1
+        });
+        json::texture::Info {
+            index: Index::new(index as u32),
+            tex_coord: texture.tex_coord,
+            extensions: None,
+            extras: None,
+        }
+    }
+
+    fn image(&mut self, image: &Arc<Image>) -> Index<json::Image> {
+        let address = Arc::as_ptr(image) as usize;
+        if let Some(&index) = self.images.get(&address) {
+            return index;
+        }
+        let view = self.view(&image.bytes, None);
+        let index = self.root.push(json::Image {
+            buffer_view: Some(view),
+            mime_type: Some(json::image::MimeType(image.mime_type.clone())),
+            name: image.name.clone(),
+            uri: None,
+            extensions: None,
+            extras: None,
+        });
+        self.images.insert(address, index);
+        index
+    }
+
+    fn sampler(&mut self, sampler: Sampler) -> Index<json::texture::Sampler> {
+        if let Some(known) = self.samplers.iter().position(|&known| known == sampler) {
+            return Index::new(known as u32);
+        }
+        self.samplers.push(sampler);
+        self.root.push(json::texture::Sampler {
+            mag_filter: sampler
+                .mag_filter
+                .map(|filter| Checked::Valid(mag_filter(filter))),
+            min_filter: sampler
+                .min_filter
+                .map(|filter| Checked::Valid(min_filter(filter))),
+            name: None,
+            wrap_s: Checked::Valid(wrapping(sampler.wrap_s)),
+            wrap_t: Checked::Valid(wrapping(sampler.wrap_t)),
+            extensions: None,
+            extras: None,
+        })
+    }
+}
+
+fn raw(facts: &impl Serialize) -> Box<RawValue> {
+    serde_json::value::to_raw_value(facts).expect("facts are names and numbers")
+}
+
+/// Tells shared data apart: it lives as long as the export, at its own address.
+fn address<T>(shared: &[T]) -> usize {
+    shared.as_ptr() as usize
+}
+
+/// Files must hold unit vectors; a degenerate triangle has none of its own.
+fn unit_or_up(vector: DVec3) -> DVec3 {
+    if vector == DVec3::ZERO {
+        DVec3::Y
+    } else {
+        vector
+    }
+}
+
+fn to_u8(value: f32) -> u8 {
+    (value.clamp(0.0, 1.0) * 255.0).round() as u8
+}
+
+fn mag_filter(filter: Filter) -> json::texture::MagFilter {
+    match filter {
+        Filter::Nearest | Filter::NearestMipmapNearest | Filter::NearestMipmapLinear => {
+            json::texture::MagFilter::Nearest
+        }
+        Filter::Linear | Filter::LinearMipmapNearest | Filter::LinearMipmapLinear => {
+            json::texture::MagFilter::Linear
+        }
+    }
+}
+
+fn min_filter(filter: Filter) -> json::texture::MinFilter {
+    match filter {
+        Filter::Nearest => json::texture::MinFilter::Nearest,
+        Filter::Linear => json::texture::MinFilter::Linear,
+        Filter::NearestMipmapNearest => json::texture::MinFilter::NearestMipmapNearest,
+        Filter::LinearMipmapNearest => json::texture::MinFilter::LinearMipmapNearest,
+        Filter::NearestMipmapLinear => json::texture::MinFilter::NearestMipmapLinear,
+        Filter::LinearMipmapLinear => json::texture::MinFilter::LinearMipmapLinear,
+    }
+}
+
+fn wrapping(wrap: Wrap) -> json::texture::WrappingMode {
+    match wrap {
+        Wrap::ClampToEdge => json::texture::WrappingMode::ClampToEdge,
+        Wrap::MirroredRepeat => json::texture::WrappingMode::MirroredRepeat,
+        Wrap::Repeat => json::texture::WrappingMode::Repeat,
+    }
+}

@@ -1,0 +1,141 @@
+//! Positions in `f64` as a file holds them: an `f64` offset and small `f32` numbers relative to it.
+
+use glam::DVec3;
+
+use super::WriteError;
+
+/// Positions relative to an offset.
+#[derive(Debug)]
+pub(super) struct Packed {
+    /// Added to each of `local` it gives the position; for the node's translation.
+    pub(super) offset: DVec3,
+    /// What is left of the positions.
+    pub(super) local: Vec<[f32; 3]>,
+    /// Exactly the smallest of `local`.
+    pub(super) min: [f32; 3],
+    /// Exactly the largest of `local`.
+    pub(super) max: [f32; 3],
+}
+
+/// Splits positions into an offset and what is left, so that the numbers left are as small as they can be.
+///
+/// # Accuracy
+///
+/// The offset is the middle of the bounds, rounded to a multiple of a sixteenth of the extent at most:
+/// programs that read it as `f32` still read it exactly while it is within a million extents. Each
+/// coordinate is then rounded once, to `f32`: by at most 2^-24 of half the extent and an eighth of that.
+///
+/// # Errors
+///
+/// No positions, or a number that `f32` cannot hold: too large, or an extent so small that it vanishes.
+pub(super) fn pack(name: &str, positions: &[DVec3]) -> Result<Packed, WriteError> {
+    let Some(&first) = positions.first() else {
+        return Err(WriteError::Empty(name.to_owned()));
+    };
+    let range_error = |vertex: usize, value: f64, limit: f32| WriteError::Range {
+        name: name.to_owned(),
+        quantity: "the position",
+        vertex,
+        value,
+        limit: f64::from(limit),
+    };
+    let too_large = |p: &DVec3| !(p.abs().max_element() <= f64::from(f32::MAX));
+    if let Some(vertex) = positions.iter().position(too_large) {
+        let largest = positions[vertex].abs().max_element();
+        return Err(range_error(vertex, largest, f32::MAX));
+    }
+
+    let (low, high) = positions
+        .iter()
+        .fold((first, first), |(l, h), &p| (l.min(p), h.max(p)));
+    let half_extent = (0.5 * high - 0.5 * low).max_element();
+    if half_extent > 0.0 && half_extent < f64::from(f32::MIN_POSITIVE) {
+        return Err(range_error(0, half_extent, f32::MIN_POSITIVE));
+    }
+    let offset = rounded_to_eighths(0.5 * low + 0.5 * high, half_extent);
+
+    let local: Vec<[f32; 3]> = positions
+        .iter()
+        .map(|&p| (p - offset).as_vec3().to_array())
+        .collect();
+    let (mut min, mut max) = (local[0], local[0]);
+    for position in &local {
+        for axis in 0..3 {
+            min[axis] = min[axis].min(position[axis]);
+            max[axis] = max[axis].max(position[axis]);
+        }
+    }
+    Ok(Packed {
+        offset,
+        local,
+        min,
+        max,
+    })
+}
+
+/// `middle` rounded to a multiple of the power of two that is at most an eighth of `half_extent`.
+fn rounded_to_eighths(middle: DVec3, half_extent: f64) -> DVec3 {
+    if half_extent == 0.0 {
+        return middle;
+    }
+    let grid = (half_extent.log2().floor() - 3.0).exp2();
+    let rounded = (middle / grid).round() * grid;
+    // Beyond 2^53 steps of the grid the division would overflow or round by itself.
+    if rounded.is_finite() { rounded } else { middle }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn far_away_details_survive() {
+        let corner = DVec3::new(1e9 + 0.25, -3e8, 7.0);
+        let positions = [
+            corner,
+            corner + DVec3::new(1e-3, 2e-3, 0.0),
+            corner + DVec3::new(0.0, 0.0, 3e-3),
+        ];
+        let packed = pack("far", &positions).unwrap();
+        for (position, local) in positions.iter().zip(&packed.local) {
+            let back = packed.offset + DVec3::from(local.map(f64::from));
+            // Half a unit of f32 at 1.7e-3, and one of f64 at 1e9 from adding up here.
+            let allowed = 1.7e-3 / f64::from(1 << 24) * 2.0 + 1.2e-7;
+            assert!((back - *position).length() <= allowed);
+        }
+    }
+
+    #[test]
+    fn the_offset_is_exact_in_f32_within_a_million_extents() {
+        for distance in [0.0, 1.0, 123.456, 5e5] {
+            let middle = DVec3::new(distance, -distance / 3.0, 0.1);
+            let packed = pack("near", &[middle - 0.7, middle + 0.7]).unwrap();
+            assert_eq!(
+                packed.offset.as_vec3().as_dvec3(),
+                packed.offset,
+                "{distance}"
+            );
+            assert!(
+                DVec3::from(packed.max.map(f64::from)).max_element() <= 0.7 * 1.125 * (1.0 + 1e-7)
+            );
+        }
+    }
+
+    #[test]
+    fn what_f32_cannot_hold_is_refused() {
+        let huge = pack("a", &[DVec3::ZERO, DVec3::new(0.0, 1e39, 0.0)]).unwrap_err();
+        assert!(
+            huge.to_string()
+                .contains("vertex 1 of the photosurface \"a\" is 1e39"),
+            "{huge}"
+        );
+        assert!(pack("a", &[DVec3::NAN]).is_err());
+        assert!(pack("a", &[DVec3::ZERO, DVec3::splat(1e-40)]).is_err());
+        assert!(pack("a", &[]).is_err());
+        let point = pack("a", &[DVec3::splat(3.3)]).unwrap();
+        assert_eq!(
+            (point.offset, point.local[0]),
+            (DVec3::splat(3.3), [0.0; 3])
+        );
+    }
+}

@@ -1,0 +1,70 @@
+//! The scenes that the program carries with it.
+
+/// A scene that is part of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BuiltInScene {
+    /// What it is called on the command line.
+    pub name: &'static str,
+    /// What it shows.
+    pub summary: &'static str,
+    /// The scene file.
+    pub json: &'static str,
+}
+
+/// All built-in scenes; the first is the one taken when none is named.
+pub const BUILT_IN_SCENES: &[BuiltInScene] = &[
+    BuiltInScene {
+        name: "sphere",
+        summary: "a sphere flies by at 0.95 c, seven steps (Rau et al. 1998, Fig. 3)",
+        json: include_str!("../../examples/scenes/sphere.json"),
+    },
+    BuiltInScene {
+        name: "cube",
+        summary: "a cube flies by at 0.9 c, seven steps (Rau et al. 1998, Fig. 4)",
+        json: include_str!("../../examples/scenes/cube.json"),
+    },
+    BuiltInScene {
+        name: "lattice",
+        summary: "into a lattice of bars at 0.9 c: straight bars become hyperbolas",
+        json: include_str!("../../examples/scenes/lattice.json"),
+    },
+    BuiltInScene {
+        name: "street",
+        summary: "down a street of cubes at 0.95 c: what lies beside comes into view ahead",
+        json: include_str!("../../examples/scenes/street.json"),
+    },
+    BuiltInScene {
+        name: "snapshot",
+        summary: "a sphere at 0.999 c and a cube at 0.8 c, as photographed by Hornof et al. 2025",
+        json: include_str!("../../examples/scenes/snapshot.json"),
+    },
+];
+
+impl BuiltInScene {
+    /// The built-in scene of that name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        BUILT_IN_SCENES.iter().find(|scene| scene.name == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    #[test]
+    fn every_built_in_scene_is_a_scene_and_fits_the_schema() {
+        let schema = Scene::json_schema();
+        let validator = jsonschema::validator_for(schema.as_value()).unwrap();
+        for built_in in BUILT_IN_SCENES {
+            let scene = Scene::from_json(built_in.json);
+            assert!(scene.is_ok(), "{}: {}", built_in.name, scene.unwrap_err());
+            let json = serde_json::from_str(built_in.json).unwrap();
+            let faults: Vec<_> = validator
+                .iter_errors(&json)
+                .map(|e| e.to_string())
+                .collect();
+            assert!(faults.is_empty(), "{}: {faults:?}", built_in.name);
+        }
+    }
+}

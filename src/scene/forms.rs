@@ -1,0 +1,207 @@
+//! The several ways in which a scene may write one value, each read with errors of its own.
+//!
+//! `#[serde(untagged)]` alone would answer every mistake with "did not match any variant"; these visitors
+//! look at what stands there first.
+
+use std::fmt;
+
+use glam::{DQuat, DVec3};
+use schemars::JsonSchema;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{Error, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use super::even_steps;
+use crate::mesh::Length;
+use crate::spacetime::{Velocity, VelocityError};
+
+/// A velocity: the vector, or a speed and a direction.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[allow(dead_code)] // Read by the schema only; `velocity` below does the reading.
+pub(super) enum VelocityForm {
+    /// The velocity vector [bx, by, bz] in units of the speed of light.
+    Vector([f64; 3]),
+    /// A speed with a direction.
+    Speed(SpeedForm),
+}
+
+/// A speed, given in exactly one of four ways, with a direction.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SpeedForm {
+    /// Speed in units of the speed of light, 0 <= beta < 1.
+    beta: Option<f64>,
+    /// 1 - beta, for speeds that beta cannot say, 0 < one_minus_beta <= 1.
+    one_minus_beta: Option<f64>,
+    /// Lorentz factor, gamma >= 1.
+    gamma: Option<f64>,
+    /// atanh(beta), from 0 to 350.
+    rapidity: Option<f64>,
+    /// Direction of motion, of any length; [0, 0, -1] if absent.
+    direction: Option<[f64; 3]>,
+}
+
+pub(super) fn velocity<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Velocity, D::Error> {
+    struct Form;
+    impl<'de> Visitor<'de> for Form {
+        type Value = Velocity;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str(
+                "a velocity [bx, by, bz] or a speed like { \"beta\": 0.9, \"direction\": [1, 0, 0] }",
+            )
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Velocity, A::Error> {
+            let vector = <[f64; 3]>::deserialize(SeqAccessDeserializer::new(seq))?;
+            Velocity::from_vector(vector.into()).map_err(A::Error::custom)
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Velocity, A::Error> {
+            let form = SpeedForm::deserialize(MapAccessDeserializer::new(map))?;
+            let direction = form.direction.map_or(DVec3::NEG_Z, DVec3::from);
+            type FromNumber = fn(f64, DVec3) -> Result<Velocity, VelocityError>;
+            let ways: [(Option<f64>, FromNumber); 4] = [
+                (form.beta, Velocity::from_beta),
+                (form.one_minus_beta, Velocity::from_one_minus_beta),
+                (form.gamma, Velocity::from_gamma),
+                (form.rapidity, Velocity::from_rapidity),
+            ];
+            let mut given = ways
+                .iter()
+                .filter_map(|(number, from)| Some((number.as_ref()?, from)));
+            match (given.next(), given.next()) {
+                (Some((&number, from)), None) => from(number, direction).map_err(A::Error::custom),
+                _ => Err(A::Error::custom(
+                    "a speed needs exactly one of beta, one_minus_beta, gamma, rapidity",
+                )),
+            }
+        }
+    }
+    deserializer.deserialize_any(Form)
+}
+
+/// A rotation `[x, y, z, w]`; lengths that differ from 1 by more than rounding are mistakes.
+pub(super) fn rotation<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DQuat, D::Error> {
+    let components = <[f64; 4]>::deserialize(deserializer)?;
+    let quaternion = DQuat::from_array(components);
+    if (quaternion.length() - 1.0).abs() > 1e-3 {
+        return Err(D::Error::custom(format_args!(
+            "the rotation {components:?} has length {}, expected a unit quaternion [x, y, z, w]",
+            quaternion.length()
+        )));
+    }
+    Ok(quaternion.normalize())
+}
+
+/// Stretches along the three axes: one factor for all, or one for each.
+#[derive(JsonSchema)]
+#[schemars(with = "ScaleForm")]
+pub(super) struct Scale(pub(super) DVec3);
+
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[allow(dead_code)] // Read by the schema only.
+enum ScaleForm {
+    /// One factor for all axes.
+    Uniform(Length),
+    /// A factor for each axis.
+    PerAxis([Length; 3]),
+}
+
+impl Default for Scale {
+    fn default() -> Self {
+        Self(DVec3::ONE)
+    }
+}
+
+impl<'de> Deserialize<'de> for Scale {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Form;
+        impl<'de> Visitor<'de> for Form {
+            type Value = Scale;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a factor > 0 or three, one for each axis")
+            }
+
+            fn visit_f64<E: Error>(self, factor: f64) -> Result<Scale, E> {
+                let factor = Length::new(factor).map_err(E::custom)?;
+                Ok(Scale(DVec3::splat(factor.get())))
+            }
+
+            fn visit_i64<E: Error>(self, factor: i64) -> Result<Scale, E> {
+                self.visit_f64(factor as f64)
+            }
+
+            fn visit_u64<E: Error>(self, factor: u64) -> Result<Scale, E> {
+                self.visit_f64(factor as f64)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Scale, A::Error> {
+                let factors = <[Length; 3]>::deserialize(SeqAccessDeserializer::new(seq))?;
+                Ok(Scale(factors.map(Length::get).into()))
+            }
+        }
+        deserializer.deserialize_any(Form)
+    }
+}
+
+/// Proper times: a list, or evenly spaced ones.
+#[derive(JsonSchema)]
+#[schemars(with = "StepsForm")]
+pub(super) struct Steps(pub(super) Vec<f64>);
+
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[allow(dead_code)] // Read by the schema only.
+enum StepsForm {
+    /// Proper times of the observer after the observation event.
+    List(Vec<f64>),
+    /// Evenly spaced proper times.
+    Even(EvenSteps),
+}
+
+/// `count` evenly spaced proper times, the first `from`, the last `to`.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct EvenSteps {
+    /// The first.
+    from: f64,
+    /// The last.
+    to: f64,
+    /// How many.
+    count: usize,
+}
+
+impl Default for Steps {
+    fn default() -> Self {
+        Self(vec![0.0])
+    }
+}
+
+impl<'de> Deserialize<'de> for Steps {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Form;
+        impl<'de> Visitor<'de> for Form {
+            type Value = Steps;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a list of proper times or { \"from\": -6, \"to\": 6, \"count\": 7 }")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Steps, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(Steps)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Steps, A::Error> {
+                let even = EvenSteps::deserialize(MapAccessDeserializer::new(map))?;
+                even_steps(even.from, even.to, even.count)
+                    .map(Steps)
+                    .map_err(A::Error::custom)
+            }
+        }
+        deserializer.deserialize_any(Form)
+    }
+}

@@ -1,0 +1,262 @@
+//! The scene file: JSON in, a scene or one error that names line, column and place out.
+
+use schemars::{Schema, schema_for};
+use thiserror::Error;
+
+use super::Scene;
+
+/// Why a text is not a scene.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("line {line}, column {column}: {}{message}", at_prefix(.at))]
+#[non_exhaustive]
+pub struct SceneError {
+    /// Line of the mistake or of the end of the value it is in, from 1.
+    pub line: usize,
+    /// Column, from 1, likewise.
+    pub column: usize,
+    /// The value's place in the scene, like `objects[1].velocity`; empty for the whole scene.
+    pub at: String,
+    /// What stands there and what was expected.
+    pub message: String,
+}
+
+fn at_prefix(at: &str) -> String {
+    if at.is_empty() {
+        String::new()
+    } else {
+        format!("{at}: ")
+    }
+}
+
+impl Scene {
+    /// Reads a scene from JSON text. Files that it names are not touched.
+    ///
+    /// # Errors
+    ///
+    /// Malformed JSON, unknown keys, wrong types, impossible values: line, column, place and what was
+    /// expected.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use photosurface::Scene;
+    ///
+    /// let error = Scene::from_json(r#"{ "objects": [ { "name": "a", "shpe": 1 } ] }"#).unwrap_err();
+    /// assert_eq!((error.line, error.at.as_str()), (1, "objects[0].shpe"));
+    /// ```
+    pub fn from_json(text: &str) -> Result<Self, SceneError> {
+        let mut deserializer = serde_json::Deserializer::from_str(text);
+        let scene = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+            let at = error.path().to_string();
+            scene_error(error.into_inner(), &at)
+        })?;
+        deserializer
+            .end()
+            .map_err(|error| scene_error(error, "."))?;
+        Ok(scene)
+    }
+
+    /// The JSON Schema of the scene file.
+    pub fn json_schema() -> Schema {
+        schema_for!(Self)
+    }
+}
+
+fn scene_error(error: serde_json::Error, at: &str) -> SceneError {
+    let (line, column) = (error.line(), error.column());
+    // serde_json has no message without its position; here the position has fields of its own.
+    let text = error.to_string();
+    let suffix = format!(" at line {line} column {column}");
+    SceneError {
+        line,
+        column,
+        at: if at == "." {
+            String::new()
+        } else {
+            at.to_owned()
+        },
+        message: text.strip_suffix(&suffix).unwrap_or(&text).to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::scene::Source;
+
+    const OBJECTS: &str =
+        r#""objects": [ { "name": "s", "shape": { "sphere": { "radius": 1 } } } ]"#;
+
+    fn error(text: &str) -> SceneError {
+        Scene::from_json(text).expect_err(text)
+    }
+
+    #[test]
+    fn the_scene_of_the_design_is_read_as_written() {
+        let scene = Scene::from_json(
+            r##"{
+              "title": "A sphere flies by at 0.95 c",
+              "observer": { "time": 1, "position": [1, 2, 3], "velocity": { "beta": 0.95, "direction": [-2, 0, 0] } },
+              "objects": [
+                { "name": "sphere", "shape": { "sphere": { "radius": 1 } }, "position": [0, 3, 0] },
+                { "name": "bunny", "file": "bunny.glb", "position": [0, -3, 0], "rotation": [0, 0, 1, 0],
+                  "scale": 10, "velocity": { "gamma": 5, "direction": [0, 0, 1] } }
+              ],
+              "steps": { "from": -6, "to": 6, "count": 7 }
+            }"##,
+        )
+        .unwrap();
+        assert_eq!(scene.title(), Some("A sphere flies by at 0.95 c"));
+        assert_eq!(scene.observer().time, 1.0);
+        assert_eq!(scene.observer().position, DVec3::new(1.0, 2.0, 3.0));
+        assert_eq!(scene.observer().velocity.direction(), DVec3::NEG_X);
+        assert_eq!(scene.steps(), [-6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0]);
+        let [sphere, bunny] = scene.objects() else {
+            panic!("two objects")
+        };
+        assert!(matches!(sphere.source, Source::Shape(..)));
+        assert_eq!(sphere.velocity.rapidity(), 0.0);
+        assert_eq!(bunny.source, Source::File("bunny.glb".into()));
+        assert_eq!(bunny.scale, DVec3::splat(10.0));
+        assert!((bunny.velocity.gamma() - 5.0).abs() < 4e-15);
+        assert_eq!(bunny.rotation * DVec3::X, DVec3::NEG_X);
+    }
+
+    #[test]
+    fn a_speed_may_be_written_in_five_ways() {
+        for velocity in [
+            "[0, 0, -0.6]",
+            r#"{ "beta": 0.6 }"#,
+            r#"{ "one_minus_beta": 0.4 }"#,
+            r#"{ "gamma": 1.25, "direction": [0, 0, -7] }"#,
+            r#"{ "rapidity": 0.6931471805599453 }"#,
+        ] {
+            let scene = Scene::from_json(&format!(
+                r#"{{ "observer": {{ "velocity": {velocity} }}, {OBJECTS} }}"#
+            ));
+            let velocity = scene.unwrap().observer().velocity;
+            assert!((velocity.gamma_beta() - 0.75).abs() < 1e-15);
+            assert_eq!(velocity.direction(), DVec3::NEG_Z);
+        }
+    }
+
+    #[test]
+    fn mistakes_are_told_with_line_column_place_and_expectation() {
+        // text, line, place, words of the message
+        let cases: [(String, usize, &str, &str); 18] = [
+            ("{".into(), 1, "", "EOF"),
+            ("[]".into(), 1, "", "expected struct SceneFields"),
+            (format!("{{ {OBJECTS} }} x"), 1, "", "trailing characters"),
+            (r#"{ "objects": [] }"#.into(), 1, "", "at least one"),
+            (
+                format!("{{\n \"observr\": {{}},\n {OBJECTS} }}"),
+                2,
+                "observr",
+                "expected one of",
+            ),
+            (
+                format!("{{ \"observer\": {{\n\"velocity\": {{ \"beta\": 1.5 }} }}, {OBJECTS} }}"),
+                2,
+                "observer.velocity",
+                "beta is 1.5, expected 0 <= beta < 1",
+            ),
+            (
+                format!(
+                    "{{ \"observer\": {{ \"velocity\": {{ \"gamma\": 2, \"beta\": 0.5 }} }}, {OBJECTS} }}"
+                ),
+                1,
+                "observer.velocity",
+                "exactly one of",
+            ),
+            (
+                format!("{{ \"observer\": {{ \"velocity\": {{ \"gama\": 2 }} }}, {OBJECTS} }}"),
+                1,
+                "observer.velocity.gama",
+                "expected one of `beta`",
+            ),
+            (
+                format!("{{ \"observer\": {{ \"velocity\": [1, 1, 0] }}, {OBJECTS} }}"),
+                1,
+                "observer.velocity",
+                "below the speed of light",
+            ),
+            (
+                format!("{{ \"observer\": {{ \"velocity\": 0.5 }}, {OBJECTS} }}"),
+                1,
+                "observer.velocity",
+                "expected a velocity [bx, by, bz] or a speed",
+            ),
+            (
+                format!("{{ \"observer\": {{ \"position\": [1, 2] }}, {OBJECTS} }}"),
+                1,
+                "observer.position",
+                "3",
+            ),
+            (
+                format!("{{ \"observer\": {{ \"time\": \"now\" }}, {OBJECTS} }}"),
+                1,
+                "observer.time",
+                "expected f64",
+            ),
+            (
+                format!("{{ \"observer\": {{ \"time\": 1e999 }}, {OBJECTS} }}"),
+                1,
+                "observer.time",
+                "out of range",
+            ),
+            (
+                format!("{{ \"steps\": [], {OBJECTS} }}"),
+                1,
+                "",
+                "at least one proper time",
+            ),
+            (
+                format!("{{ \"steps\": {{ \"from\": 0, \"to\": 1, \"count\": 0 }}, {OBJECTS} }}"),
+                1,
+                "steps",
+                "count is 0",
+            ),
+            (
+                r#"{ "objects": [ { "name": "a" } ] }"#.into(),
+                1,
+                "objects[0]",
+                "expected either \"file\" or \"shape\"",
+            ),
+            (
+                r#"{ "objects": [ { "name": "a", "file": "a.glb", "scale": 0 } ] }"#.into(),
+                1,
+                "objects[0].scale",
+                "expected",
+            ),
+            (
+                r#"{ "objects": [ { "name": "a", "file": "a.glb", "rotation": [0, 0, 0, 2] } ] }"#
+                    .into(),
+                1,
+                "objects[0].rotation",
+                "unit quaternion",
+            ),
+        ];
+        for (text, line, at, words) in cases {
+            let error = error(&text);
+            assert_eq!(
+                (error.line, error.at.as_str()),
+                (line, at),
+                "{text}\n{error}"
+            );
+            assert!(error.column > 0, "{text}\n{error}");
+            assert!(error.message.contains(words), "{text}\n{error}");
+        }
+    }
+
+    #[test]
+    fn names_must_tell_objects_apart() {
+        let object = r#"{ "name": "s", "shape": { "sphere": { "radius": 1 } } }"#;
+        let error = error(&format!(r#"{{ "objects": [ {object}, {object} ] }}"#));
+        assert!(
+            error.message.contains("two objects are named \"s\""),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,361 @@
+//! What a user asks for: the observer, the objects, the steps; read from JSON and checked.
+//!
+//! A scene is text and numbers only. Files that it names are read by the `io` room.
+
+mod built_in;
+mod forms;
+mod json;
+
+pub use built_in::{BUILT_IN_SCENES, BuiltInScene};
+pub use json::SceneError;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use glam::{DAffine3, DQuat, DVec3};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use thiserror::Error;
+
+use crate::mesh::{Appearance, Color, Length, Model, Shape};
+use crate::spacetime::{Event, Velocity, WorldLine};
+use forms::{Scale, Steps, VelocityForm};
+
+/// Most evenly spaced steps one scene may have: a guard against slips of the pen.
+const MAX_STEPS: usize = 100_000;
+
+/// An observer and what there is to see.
+///
+/// Everything is given in the scene frame: c = 1, y up, lengths and times in one unit.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(try_from = "SceneFields")]
+#[schemars(with = "SceneFields")]
+pub struct Scene {
+    title: Option<String>,
+    observer: Observer,
+    objects: Vec<Object>,
+    steps: Vec<f64>,
+}
+
+/// Who sees the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Observer {
+    /// Scene time of the observation.
+    pub time: f64,
+    /// Place of the observation in the scene frame.
+    #[schemars(with = "[f64; 3]")]
+    pub position: DVec3,
+    /// The observer's velocity in the scene frame.
+    #[serde(deserialize_with = "forms::velocity")]
+    #[schemars(with = "VelocityForm")]
+    pub velocity: Velocity,
+    /// Radius of a small sphere that marks the observer in the output; no marker without it.
+    pub marker: Option<Length>,
+}
+
+/// A thing in uniform motion.
+///
+/// Its origin is at `position` at scene time 0 and moves with `velocity`; `rotation` and `scale` act in
+/// its rest frame, whose axes are those of the scene under a pure boost.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(try_from = "ObjectFields")]
+#[schemars(with = "ObjectFields")]
+pub struct Object {
+    /// Names the object in the output; unique in the scene.
+    pub name: String,
+    /// Where its geometry comes from.
+    pub source: Source,
+    /// Where its origin is at scene time 0, in the scene frame.
+    pub position: DVec3,
+    /// Turns its geometry, after `scale`, in the rest frame; a unit quaternion.
+    pub rotation: DQuat,
+    /// Stretches its geometry along its own axes; positive.
+    pub scale: DVec3,
+    /// Its velocity in the scene frame.
+    pub velocity: Velocity,
+}
+
+/// Where the geometry of an object comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// A glTF, GLB or OBJ file.
+    File(PathBuf),
+    /// A shape that the program makes itself.
+    Shape(Shape, Appearance),
+    /// Geometry that is at hand already; only from Rust.
+    Model(Arc<Model>),
+}
+
+/// Why well-formed values do not make a scene.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum InvalidScene {
+    /// Nothing to see.
+    #[error("the scene has no objects, expected at least one")]
+    NoObjects,
+    /// An object without a name.
+    #[error("objects[{0}] has an empty name, expected a name to call it by in the output")]
+    EmptyName(usize),
+    /// Two objects of one name.
+    #[error("two objects are named \"{0}\", expected a name of its own for each")]
+    RepeatedName(String),
+    /// No source or two.
+    #[error("object \"{name}\" has {found}, expected either \"file\" or \"shape\"")]
+    Source {
+        /// Which object.
+        name: String,
+        /// What it has.
+        found: &'static str,
+    },
+    /// Looks given for something that brings its own.
+    #[error(
+        "object \"{name}\" comes from a file, which has its own colours; \"{field}\" is for shapes"
+    )]
+    LooksOfFile {
+        /// Which object.
+        name: String,
+        /// The key that does not belong.
+        field: &'static str,
+    },
+    /// No steps at all.
+    #[error("the list of steps is empty, expected at least one proper time")]
+    NoSteps,
+    /// Too many or too few evenly spaced steps.
+    #[error("count is {0}, expected 1 to {MAX_STEPS} steps")]
+    StepCount(usize),
+    /// A step that is no number.
+    #[error("step {0} is {1}, expected a finite proper time")]
+    Step(usize, f64),
+}
+
+impl Scene {
+    /// A scene of `objects` seen by `observer` at the observation event alone.
+    ///
+    /// # Errors
+    ///
+    /// No objects, or two of one name.
+    pub fn new(observer: Observer, objects: Vec<Object>) -> Result<Self, InvalidScene> {
+        if objects.is_empty() {
+            return Err(InvalidScene::NoObjects);
+        }
+        for (index, object) in objects.iter().enumerate() {
+            if object.name.is_empty() {
+                return Err(InvalidScene::EmptyName(index));
+            }
+            if objects[..index]
+                .iter()
+                .any(|other| other.name == object.name)
+            {
+                return Err(InvalidScene::RepeatedName(object.name.clone()));
+            }
+        }
+        Ok(Self {
+            title: None,
+            observer,
+            objects,
+            steps: vec![0.0],
+        })
+    }
+
+    /// The scene at these proper times of the observer, counted from the observation event.
+    ///
+    /// # Errors
+    ///
+    /// No steps, or one that is not finite.
+    pub fn with_steps(mut self, steps: Vec<f64>) -> Result<Self, InvalidScene> {
+        if steps.is_empty() {
+            return Err(InvalidScene::NoSteps);
+        }
+        if let Some(index) = steps.iter().position(|step| !step.is_finite()) {
+            return Err(InvalidScene::Step(index, steps[index]));
+        }
+        self.steps = steps;
+        Ok(self)
+    }
+
+    /// The same scene seen by another observer.
+    #[must_use]
+    pub fn with_observer(mut self, observer: Observer) -> Self {
+        self.observer = observer;
+        self
+    }
+
+    /// The scene's title.
+    pub fn title(&self) -> Option<&str> {
+        self.title.as_deref()
+    }
+
+    /// Who sees the scene.
+    pub fn observer(&self) -> &Observer {
+        &self.observer
+    }
+
+    /// What there is to see; at least one, with names of their own.
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
+    }
+
+    /// Proper times of the observer at which the scene is seen; at least one.
+    pub fn steps(&self) -> &[f64] {
+        &self.steps
+    }
+}
+
+/// `count` evenly spaced proper times, the first `from`, the last `to`; `from` alone if `count` is 1.
+///
+/// # Errors
+///
+/// `count` is zero or above a hundred thousand, or an end is not finite.
+pub fn even_steps(from: f64, to: f64, count: usize) -> Result<Vec<f64>, InvalidScene> {
+    if count == 0 || count > MAX_STEPS {
+        return Err(InvalidScene::StepCount(count));
+    }
+    for (index, end) in [(0, from), (count - 1, to)] {
+        if !end.is_finite() {
+            return Err(InvalidScene::Step(index, end));
+        }
+    }
+    let intervals = (count - 1).max(1) as f64;
+    // Weights rather than multiples of a spacing: both ends come out exactly.
+    let step = |index: usize| {
+        let weight = index as f64 / intervals;
+        from * (1.0 - weight) + to * weight
+    };
+    Ok((0..count).map(step).collect())
+}
+
+impl Observer {
+    /// The observer's worldline; proper time 0 is the observation event.
+    pub fn world_line(&self) -> WorldLine {
+        WorldLine {
+            origin: Event::new(self.time, self.position),
+            velocity: self.velocity,
+        }
+    }
+}
+
+impl Object {
+    /// An object at rest at the origin of the scene.
+    pub fn new(name: impl Into<String>, source: Source) -> Self {
+        Self {
+            name: name.into(),
+            source,
+            position: DVec3::ZERO,
+            rotation: DQuat::IDENTITY,
+            scale: DVec3::ONE,
+            velocity: Velocity::ZERO,
+        }
+    }
+
+    /// The worldline of the object's origin.
+    pub fn world_line(&self) -> WorldLine {
+        WorldLine {
+            origin: Event::new(0.0, self.position),
+            velocity: self.velocity,
+        }
+    }
+
+    /// From the coordinates of the model to the rest frame, origin at the object's origin.
+    pub fn model_to_rest(&self) -> DAffine3 {
+        DAffine3::from_scale_rotation_translation(self.scale, self.rotation, DVec3::ZERO)
+    }
+}
+
+/// A scene as a file writes it.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "photosurface scene")]
+struct SceneFields {
+    /// What the scene shows, for people.
+    title: Option<String>,
+    /// Who sees the scene; at rest at the origin at time 0 if absent.
+    #[serde(default)]
+    observer: Observer,
+    /// What there is to see.
+    objects: Vec<Object>,
+    /// Proper times of the observer after the observation event: a list, or `from`, `to` and `count`.
+    /// The observation event alone if absent.
+    #[serde(default)]
+    steps: Steps,
+}
+
+impl TryFrom<SceneFields> for Scene {
+    type Error = InvalidScene;
+
+    fn try_from(fields: SceneFields) -> Result<Self, InvalidScene> {
+        let scene = Self::new(fields.observer, fields.objects)?.with_steps(fields.steps.0)?;
+        Ok(Self {
+            title: fields.title,
+            ..scene
+        })
+    }
+}
+
+/// An object as a file writes it.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct ObjectFields {
+    /// Names the object in the output; unique in the scene.
+    name: String,
+    /// A glTF, GLB or OBJ file, relative to the scene file. Either this or `shape`.
+    file: Option<PathBuf>,
+    /// A shape that the program makes itself. Either this or `file`.
+    shape: Option<Shape>,
+    /// Colour of a shape, "#rrggbb".
+    color: Option<Color>,
+    /// Second colour of a shape, "#rrggbb"; with it the shape is checkered.
+    checker: Option<Color>,
+    /// Where the object's origin is at scene time 0, in the scene frame; the scene's origin if absent.
+    #[serde(default)]
+    #[schemars(with = "[f64; 3]")]
+    position: DVec3,
+    /// Turns the geometry, after `scale`, in the rest frame: a unit quaternion [x, y, z, w].
+    #[serde(default, deserialize_with = "forms::rotation")]
+    #[schemars(with = "[f64; 4]")]
+    rotation: DQuat,
+    /// Stretches the geometry along its own axes: one factor or three, positive; 1 if absent.
+    #[serde(default)]
+    scale: Scale,
+    /// The object's velocity in the scene frame; at rest if absent.
+    #[serde(default, deserialize_with = "forms::velocity")]
+    #[schemars(with = "VelocityForm")]
+    velocity: Velocity,
+}
+
+impl TryFrom<ObjectFields> for Object {
+    type Error = InvalidScene;
+
+    fn try_from(fields: ObjectFields) -> Result<Self, InvalidScene> {
+        let name = fields.name;
+        let source = match (fields.file, fields.shape) {
+            (Some(file), None) => {
+                let looks = [("color", fields.color), ("checker", fields.checker)];
+                if let Some((field, _)) = looks.iter().find(|(_, color)| color.is_some()) {
+                    return Err(InvalidScene::LooksOfFile { name, field });
+                }
+                Source::File(file)
+            }
+            (None, Some(shape)) => {
+                let plain = Appearance::default();
+                let appearance = Appearance {
+                    color: fields.color.unwrap_or(plain.color),
+                    checker: fields.checker,
+                };
+                Source::Shape(shape, appearance)
+            }
+            (file, _) => {
+                let found = if file.is_some() { "both" } else { "neither" };
+                return Err(InvalidScene::Source { name, found });
+            }
+        };
+        Ok(Self {
+            name,
+            source,
+            position: fields.position,
+            rotation: fields.rotation,
+            scale: fields.scale.0,
+            velocity: fields.velocity,
+        })
+    }
+}

@@ -1,0 +1,558 @@
+//! The binary as users run it: exit status, clean stdout, every flag reaches its parameter, errors that help.
+
+mod common;
+
+use common::command::{Workplace, glb_json, node_names};
+use serde_json::Value;
+
+/// A square of two triangles.
+const SQUARE: &str = "o square\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
+
+/// A scene with one sphere that takes no time.
+const BALL: &str = r#"{ "observer": { "velocity": { "beta": 0.6, "direction": [1, 0, 0] } },
+  "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1, "resolution": 8 } }, "position": [0, 3, 0] } ] }"#;
+
+fn with_ball() -> Workplace {
+    let workplace = Workplace::new();
+    workplace.write("ball.json", BALL);
+    workplace.write("square.obj", SQUARE);
+    workplace
+}
+
+#[test]
+fn the_newcomers_command_writes_the_sphere() {
+    let workplace = Workplace::new();
+    let run = workplace.run("export").success();
+    assert!(run.stdout.is_empty(), "{run}");
+    assert!(
+        run.stderr
+            .contains("sphere_photosurface.glb: 7 photosurfaces"),
+        "{run}"
+    );
+    assert_eq!(workplace.files(), ["sphere_photosurface.glb"]);
+    let names = node_names(&workplace.read("sphere_photosurface.glb"));
+    assert_eq!(names[0], "observer");
+    assert_eq!(names[1], "sphere_step000");
+    assert_eq!(names.len(), 8);
+}
+
+#[test]
+fn every_built_in_scene_exports() {
+    let workplace = Workplace::new();
+    let list = workplace.run("example").success();
+    let names: Vec<_> = list
+        .stdout_text()
+        .lines()
+        .filter_map(|line| line.split_whitespace().next())
+        .collect();
+    assert_eq!(names, ["sphere", "cube", "lattice", "street", "snapshot"]);
+    for name in names {
+        workplace
+            .run(&format!("export --example {name} -o {name}.glb"))
+            .success();
+        workplace.run(&format!("check --example {name}")).success();
+        let printed = workplace.run(&format!("example {name}")).success();
+        workplace.write("printed.json", &printed.stdout);
+        workplace
+            .run("export printed.json -o printed.glb")
+            .success();
+        assert_eq!(
+            workplace.read("printed.glb"),
+            workplace.read(&format!("{name}.glb"))
+        );
+    }
+    workplace
+        .run("example nosuch")
+        .error(&["\"nosuch\"", "sphere, cube, lattice, street, snapshot"]);
+    workplace
+        .run("export --example nosuch")
+        .error(&["\"nosuch\""]);
+}
+
+#[test]
+fn the_readmes_commands_work() {
+    let workplace = Workplace::new();
+    workplace.write("bunny.obj", SQUARE);
+    workplace.write("scene.json", BALL);
+    let readme = include_str!("../README.md");
+    let blocks = readme
+        .split("```sh\n")
+        .skip(1)
+        .map(|rest| rest.split("```").next().unwrap_or_default());
+    let lines = blocks
+        .flat_map(str::lines)
+        .filter(|line| line.starts_with("photosurface "));
+    let mut count = 0;
+    for line in lines {
+        workplace.run_shell(line).success();
+        count += 1;
+    }
+    assert!(count >= 5, "only {count} commands found in the README");
+}
+
+#[test]
+fn every_flag_reaches_its_parameter() {
+    let workplace = with_ball();
+    let cases: &[(&str, &str, &[f64])] = &[
+        ("", "observer_rapidity", &[std::f64::consts::LN_2]),
+        ("--beta 0.8", "observer_beta", &[0.8]),
+        (
+            "--one-minus-beta 1e-30",
+            "observer_rapidity",
+            &[34.885_349_686_183_09],
+        ),
+        ("--gamma 5", "observer_gamma", &[5.0]),
+        ("--rapidity 40", "observer_rapidity", &[40.0]),
+        ("--beta 0", "observer_gamma", &[1.0]),
+        (
+            "--direction=-3,0,4",
+            "observer_direction",
+            &[-0.6, 0.0, 0.8],
+        ),
+        (
+            "--direction 0,0,-2",
+            "observer_rapidity",
+            &[std::f64::consts::LN_2],
+        ),
+        (
+            "--observer 1,-2,3.5",
+            "observer_position",
+            &[1.0, -2.0, 3.5],
+        ),
+        ("--observer -1,2,3", "observer_position", &[-1.0, 2.0, 3.0]),
+        ("--time -4", "observer_time", &[-4.0]),
+        ("--steps 1,2.5", "steps", &[1.0, 2.5]),
+        ("--steps -1", "steps", &[-1.0]),
+        ("--steps=-6..6/3", "steps", &[-6.0, 0.0, 6.0]),
+    ];
+    for (flags, key, expected) in cases {
+        let run = workplace
+            .run(&format!(
+                "export ball.json -o out.glb --report report.json {flags}"
+            ))
+            .success();
+        let scene = &workplace.read_json("report.json")["scene"];
+        let found: Vec<f64> = match &scene[key] {
+            Value::Array(numbers) => numbers.iter().filter_map(Value::as_f64).collect(),
+            number => number.as_f64().into_iter().collect(),
+        };
+        assert_eq!(found.len(), expected.len(), "{key}: {found:?}\n{run}");
+        for (found, expected) in found.iter().zip(*expected) {
+            assert!(
+                (found - expected).abs() <= 4e-15 * expected.abs(),
+                "{key}: {found} {expected}\n{run}"
+            );
+        }
+    }
+    workplace
+        .run("export ball.json -o out.glb --marker 0.25")
+        .success();
+    assert_eq!(node_names(&workplace.read("out.glb")), ["observer", "ball"]);
+    workplace
+        .run("export --marker 0 --steps 0 -o out.glb")
+        .success();
+    assert_eq!(node_names(&workplace.read("out.glb")), ["sphere"]);
+}
+
+#[test]
+fn impossible_flags_are_refused_by_name() {
+    let workplace = with_ball();
+    workplace
+        .run("export --beta 1")
+        .error(&["--beta", "beta is 1, expected 0 <= beta < 1"]);
+    workplace.run("export --beta -0.5").error(&["beta is -0.5"]);
+    workplace
+        .run("export --gamma 0.5")
+        .error(&["--gamma", "gamma is 0.5"]);
+    workplace
+        .run("export --rapidity 400")
+        .error(&["--rapidity", "at most 350"]);
+    workplace
+        .run("export --one-minus-beta 2")
+        .error(&["--one-minus-beta", "one_minus_beta is 2"]);
+    workplace
+        .run("export --beta 0.5 --gamma 2")
+        .error(&["cannot be used with"]);
+    workplace
+        .run("export --direction 0,0,0")
+        .error(&["--direction", "not zero"]);
+    workplace
+        .run("export --direction 1,2")
+        .error(&["--direction", "expected three"]);
+    workplace
+        .run("export --steps 1..2")
+        .error(&["--steps", "FROM..TO/COUNT"]);
+    workplace
+        .run("export --time nan")
+        .error(&["--time", "finite"]);
+    workplace
+        .run("export --marker -1")
+        .error(&["--marker", "-1"]);
+    workplace
+        .run("export --example cube ball.json")
+        .error(&["cannot be used with"]);
+    workplace.run("export --nonsense").error(&["--nonsense"]);
+    workplace.run("").error(&["Usage"]);
+    assert_eq!(workplace.files(), ["ball.json", "square.obj"]);
+}
+
+#[test]
+fn a_bare_mesh_needs_no_scene() {
+    let workplace = with_ball();
+    let run = workplace
+        .run("export square.obj --beta 0.6 --observer 0,0,2")
+        .success();
+    assert!(run.stderr.contains("square_photosurface.glb"), "{run}");
+    let bytes = workplace.read("square_photosurface.glb");
+    assert_eq!(node_names(&bytes), ["square"]);
+    // The observer, 2 before the square, moves towards it: the corners are seen where the map of
+    // light-cone coordinates puts them, gamma (d + beta r) ahead.
+    let json = glb_json(&bytes);
+    let z = json["nodes"][0]["translation"][2].as_f64().unwrap_or(0.0);
+    let local = json["accessors"][0]["max"][2].as_f64().unwrap();
+    let expected = -1.25 * (2.0 + 0.6 * 6f64.sqrt());
+    assert!(
+        (z + local - expected).abs() < 1e-6,
+        "{} {expected}",
+        z + local
+    );
+
+    // Unplaced, it stands off two diagonals.
+    workplace
+        .run("export square.obj --report report.json")
+        .success();
+    let z = workplace.read_json("report.json")["scene"]["observer_position"][2]
+        .as_f64()
+        .unwrap();
+    assert!((z - 2.0 * 8f64.sqrt()).abs() < 1e-12, "{z}");
+    workplace
+        .run("export square.obj --direction 0,1,0 --report report.json")
+        .success();
+    let y = workplace.read_json("report.json")["scene"]["observer_position"][1]
+        .as_f64()
+        .unwrap();
+    assert!((y + 2.0 * 8f64.sqrt()).abs() < 1e-12, "{y}");
+}
+
+#[test]
+fn stdin_and_stdout_take_the_place_of_files() {
+    let workplace = with_ball();
+    workplace.run("export ball.json -o file.glb").success();
+    let file = workplace.read("file.glb");
+    let run = workplace
+        .run_with("export - -o -", BALL.as_bytes(), &[])
+        .success();
+    assert!(run.stdout == file, "stdout differs from the file");
+    assert!(run.stderr.is_empty(), "{run}");
+    // A GLB from stdin, its report to stdout.
+    let run = workplace
+        .run_with("export - -o again.glb --report -", &file, &[])
+        .success();
+    let report: Value = serde_json::from_slice(&run.stdout).unwrap();
+    assert_eq!(report["objects"][0]["object"], "mesh");
+    let run = workplace
+        .run_with("check -", BALL.as_bytes(), &[])
+        .success();
+    assert!(run.stdout_text().contains("ball"), "{run}");
+    workplace
+        .run_with("export - -o x.glb", b"{ \"objects\": 1 }", &[])
+        .error(&["stdin", "line 1", "objects"]);
+    workplace
+        .run_with("export - -o x.glb", b"\xff\xfe", &[])
+        .error(&["stdin", "neither a GLB nor text"]);
+    workplace.run("export --split -o -").error(&["--split"]);
+    workplace
+        .run("export -o - --report -")
+        .error(&["cannot both go to stdout"]);
+}
+
+#[test]
+fn wrong_scenes_are_told_with_file_line_column_and_expectation() {
+    let workplace = Workplace::new();
+    workplace.write("wrong.json", BALL.replace("radius", "raduis"));
+    let run = workplace.run("export wrong.json -o out.glb");
+    run.error(&[
+        "wrong.json: line 2, column",
+        "objects[0].shape.sphere",
+        "`raduis`",
+        "expected",
+        "radius",
+    ]);
+    workplace.write("wrong.json", BALL.replace("0.6", "1.6"));
+    workplace.run("check wrong.json").error(&[
+        "wrong.json: line 1",
+        "observer.velocity",
+        "beta is 1.6",
+    ]);
+    workplace.write(
+        "wrong.json",
+        BALL.replace("\"shape\"", "\"file\": \"x.glb\", \"shape\""),
+    );
+    workplace
+        .run("check wrong.json")
+        .error(&["object \"ball\" has both"]);
+    workplace.write(
+        "wrong.json",
+        r#"{ "objects": [ { "name": "a", "file": "missing.glb" } ] }"#,
+    );
+    workplace
+        .run("check wrong.json")
+        .error(&["object \"a\"", "missing.glb"]);
+    assert_eq!(workplace.files(), ["wrong.json"]);
+}
+
+#[test]
+fn missing_and_unknown_files_are_told_by_name() {
+    let workplace = with_ball();
+    workplace
+        .run("export nosuch.json")
+        .error(&["nosuch.json", "No such file"]);
+    workplace
+        .run("export nosuch.glb")
+        .error(&["nosuch.glb", "No such file"]);
+    workplace
+        .run("export ball.stl")
+        .error(&["ball.stl", "unknown extension", ".glb, .gltf, .obj"]);
+    workplace
+        .run("export ball.json -o out.stl")
+        .error(&["out.stl", ".glb, .gltf or .ply"]);
+    workplace
+        .run("export ball.json -o out")
+        .error(&["out: unknown extension"]);
+    workplace
+        .run("export ball.json -o no/such/out.glb")
+        .error(&["no/such/out.glb", "No such file"]);
+    workplace
+        .run("export ball.json -o square.obj/out.glb")
+        .error(&["square.obj/out.glb"]);
+    workplace
+        .run("export ball.json --report no/such.json")
+        .error(&["no/such.json"]);
+    workplace.write("empty.glb", "");
+    workplace.run("export empty.glb").error(&["empty.glb"]);
+    assert_eq!(workplace.files(), ["ball.json", "empty.glb", "square.obj"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_unwritable_directory_is_told_before_any_work() {
+    use std::os::unix::fs::PermissionsExt;
+    let workplace = with_ball();
+    let directory = workplace.path("locked");
+    std::fs::create_dir(&directory).unwrap();
+    std::fs::set_permissions(&directory, std::fs::Permissions::from_mode(0o555)).unwrap();
+    if std::fs::write(directory.join("probe"), "").is_ok() {
+        // The superuser may write anywhere but into what is no file system for it.
+        workplace
+            .run("export ball.json -o /proc/out.glb")
+            .error(&["/proc/out.glb"]);
+    } else {
+        workplace
+            .run("export ball.json -o locked/out.glb")
+            .error(&["locked/out.glb", "denied"]);
+    }
+}
+
+#[test]
+fn what_is_read_is_never_written_over() {
+    let workplace = with_ball();
+    workplace.run("export square.obj -o mesh.glb").success();
+    let before = workplace.read("mesh.glb");
+    workplace
+        .run("export mesh.glb -o mesh.glb")
+        .error(&["mesh.glb", "written over"]);
+    workplace
+        .run("export mesh.glb -o out.glb --report ./mesh.glb")
+        .error(&["written over"]);
+    assert_eq!(workplace.read("mesh.glb"), before);
+    workplace.write(
+        "scene.json",
+        r#"{ "objects": [ { "name": "a", "file": "mesh.glb" } ] }"#,
+    );
+    workplace
+        .run("export scene.json -o mesh.glb")
+        .error(&["mesh.glb", "written over"]);
+}
+
+#[test]
+fn files_come_in_three_formats_and_one_for_each_step() {
+    let workplace = with_ball();
+    workplace
+        .run("export ball.json --steps 0,1 -o a.gltf")
+        .success();
+    let json = workplace.read_json("a.gltf");
+    assert_eq!(json["buffers"][0]["uri"], "a.bin");
+    assert_eq!(
+        json["buffers"][0]["byteLength"].as_u64(),
+        Some(workplace.read("a.bin").len() as u64)
+    );
+    workplace
+        .run("export ball.json --steps 0,1 -o a.ply")
+        .success();
+    assert!(
+        workplace
+            .read("a.ply")
+            .starts_with(b"ply\nformat binary_little_endian 1.0\n")
+    );
+
+    workplace
+        .run("export ball.json --steps 0,1 --split -o b.glb")
+        .success();
+    workplace
+        .run("export ball.json --steps 0,1 -o c.glb")
+        .success();
+    assert_eq!(
+        workplace.files(),
+        [
+            "a.bin",
+            "a.gltf",
+            "a.ply",
+            "b_step000.glb",
+            "b_step001.glb",
+            "ball.json",
+            "c.glb",
+            "square.obj"
+        ]
+    );
+    assert_eq!(
+        node_names(&workplace.read("b_step000.glb")),
+        ["ball_step000"]
+    );
+    assert_eq!(
+        node_names(&workplace.read("b_step001.glb")),
+        ["ball_step001"]
+    );
+    assert_eq!(
+        node_names(&workplace.read("c.glb")),
+        ["ball_step000", "ball_step001"]
+    );
+    // What the steps share is written once.
+    let json = glb_json(&workplace.read("c.glb"));
+    let indices = |mesh: usize| json["meshes"][mesh]["primitives"][0]["indices"].clone();
+    assert_eq!(indices(0), indices(1));
+}
+
+#[test]
+fn the_report_and_the_extras_say_the_same() {
+    let workplace = with_ball();
+    workplace
+        .run("export ball.json --steps 0,1 -o out.glb --report report.json")
+        .success();
+    let report = workplace.read_json("report.json");
+    let json = glb_json(&workplace.read("out.glb"));
+    assert_eq!(report["scene"], json["scenes"][0]["extras"]);
+    assert_eq!(report["objects"][1], json["nodes"][1]["extras"]);
+    assert_eq!(report["objects"][1]["name"], "ball_step001");
+    assert_eq!(report["objects"][1]["proper_time"], 1.0);
+    let gamma = report["objects"][1]["relative_gamma"].as_f64().unwrap();
+    assert!((gamma - 1.25).abs() < 1e-15);
+    let stages: Vec<_> = report["stages"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(|stage| stage["name"].as_str())
+        .collect();
+    assert_eq!(stages, ["read", "photosurface", "write"]);
+}
+
+#[test]
+fn the_same_bytes_on_every_run_and_with_any_number_of_threads() {
+    let workplace = Workplace::new();
+    for format in ["glb", "ply"] {
+        let mut files = Vec::new();
+        for threads in ["1", "2", "7", "7"] {
+            let arguments = format!("export --example snapshot -o out.{format}");
+            workplace
+                .run_with(&arguments, b"", &[("RAYON_NUM_THREADS", threads)])
+                .success();
+            files.push(workplace.read(&format!("out.{format}")));
+        }
+        assert!(files.windows(2).all(|pair| pair[0] == pair[1]), "{format}");
+    }
+}
+
+#[test]
+fn messages_go_to_stderr_as_loud_as_asked() {
+    let workplace = with_ball();
+    let quiet = workplace.run("export ball.json -o out.glb -q").success();
+    assert!(
+        quiet.stdout.is_empty() && quiet.stderr.is_empty(),
+        "{quiet}"
+    );
+    let verbose = workplace.run("export ball.json -o out.glb -v").success();
+    assert!(
+        verbose.stderr.contains("ball: proper time 0, gamma 1.25"),
+        "{verbose}"
+    );
+    assert!(verbose.stderr.contains("write:"), "{verbose}");
+    workplace
+        .run("export ball.json -q -v")
+        .error(&["cannot be used with"]);
+    let out_of_range = workplace.run("export ball.json -o far.glb --rapidity 200");
+    out_of_range.error(&[
+        "the photosurface \"ball\"",
+        "beyond what 32-bit numbers",
+        "smaller rapidity",
+    ]);
+    assert_eq!(workplace.files(), ["ball.json", "out.glb", "square.obj"]);
+}
+
+#[test]
+fn check_says_what_an_export_would_make() {
+    let workplace = with_ball();
+    let run = workplace.run("check ball.json --steps 0,1,2").success();
+    let (text, triangles) = (run.stdout_text(), 20 * 2 * 2);
+    assert!(text.contains(&format!(" {triangles} ")), "{run}");
+    assert!(text.contains(&format!("3 steps: 3 photosurfaces")), "{run}");
+    assert!(
+        text.contains(&format!(" {} triangles", 3 * triangles)),
+        "{run}"
+    );
+    assert_eq!(workplace.files(), ["ball.json", "square.obj"]);
+}
+
+#[test]
+fn the_schema_is_a_schema() {
+    let workplace = Workplace::new();
+    let run = workplace.run("schema").success();
+    let schema: Value = serde_json::from_slice(&run.stdout).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    assert!(validator.is_valid(&serde_json::from_str(BALL).unwrap()));
+    for wrong in [
+        BALL.replace("radius", "raduis"),
+        BALL.replace("objects", "object"),
+        "[]".into(),
+    ] {
+        assert!(
+            !validator.is_valid(&serde_json::from_str(&wrong).unwrap()),
+            "{wrong}"
+        );
+    }
+}
+
+#[test]
+fn help_names_every_command_and_the_units() {
+    let workplace = Workplace::new();
+    let run = workplace.run("--help").success();
+    for word in [
+        "export",
+        "check",
+        "example",
+        "schema",
+        "the speed of light is 1",
+        "Exit status",
+    ] {
+        assert!(run.stdout_text().contains(word), "{word}\n{run}");
+    }
+    let run = workplace.run("export --help").success();
+    for word in [
+        "--beta",
+        "--one-minus-beta",
+        "--steps",
+        "--split",
+        "--report",
+        "[default",
+    ] {
+        assert!(run.stdout_text().contains(word), "{word}\n{run}");
+    }
+}

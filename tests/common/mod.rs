@@ -1,0 +1,5 @@
+//! What several tests share.
+
+#![allow(dead_code, reason = "no single test program uses all of it")]
+
+pub mod command;
