@@ -11,7 +11,10 @@ use super::ShapeError;
 pub struct Appearance {
     /// The colour, `#rrggbb` in sRGB.
     pub color: Color,
-    /// The colour of every other field of a checker pattern; without it the shape is plain.
+    /// The colour of every other cell of a checker pattern; without it the shape is plain. Cells: on
+    /// a sphere 15 degrees; on a box 8 x 8 a side; on a torus 24 around the axis and 8 around the
+    /// tube; on cylinder and cone 24 around and about square; on a rod 4 around and about square; on
+    /// a grid its own; on a lattice about as wide as a bar.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub checker: Option<Color>,
 }
