@@ -118,14 +118,18 @@ impl PhotosurfaceMap {
     /// The derivative of [`PhotosurfaceMap::seen_position`]: `I + n a^T`,
     /// `a = (gamma - 1) n + gamma beta d / r`.
     ///
+    /// Evaluated as `(I - n n^T) + n (D n + gamma beta d_across / r)^T`: behind the observer `a` all but
+    /// cancels against `-n`, the Doppler factor `D` keeps what is left.
+    ///
     /// At the observer itself, where there is none, that of the boost alone (`d / r` taken as 0).
     pub fn jacobian(&self, offset_rest: DVec3) -> DMat3 {
         let n = self.direction;
-        let toward = unit(offset_rest).unwrap_or(DVec3::ZERO);
-        // gamma - 1 without cancellation at low speed.
-        let gamma_minus_one = self.gamma_beta * self.gamma_beta / (self.gamma + 1.0);
-        let a = n * gamma_minus_one + toward * self.gamma_beta;
-        DMat3::from_cols(DVec3::X + n * a.x, DVec3::Y + n * a.y, DVec3::Z + n * a.z)
+        let LightCone { across, u, w } = self.light_cone(offset_rest);
+        let r = 0.5 * (w + u);
+        let toward_across = if r > 0.0 { across / r } else { DVec3::ZERO };
+        let b = n * self.doppler_factor(offset_rest) + toward_across * self.gamma_beta;
+        let column = |axis: DVec3| (axis - n * n.dot(axis)) + n * b.dot(axis);
+        DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))
     }
 
     /// The unit normal of the photosurface where the surface at rest has the normal `normal_rest`.
