@@ -1,5 +1,113 @@
-//! What several tests share.
+//! What several tests share: an independent oracle, repeatable random numbers, a record of errors.
 
 #![allow(dead_code, reason = "no single test program uses all of it")]
+#![allow(
+    clippy::print_stdout,
+    reason = "cargo test shows it on failure or with --nocapture"
+)]
 
-pub mod command;
+pub(crate) mod oracle;
+
+use photosurface::DVec3;
+
+/// Repeatable pseudo-random numbers (SplitMix64: Steele, Lea, Flood 2014).
+pub(crate) struct Random(u64);
+
+impl Random {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Even in `[low, high)`.
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        let fraction = (self.next() >> 11) as f64 / (1u64 << 53) as f64;
+        low + (high - low) * fraction
+    }
+
+    /// Even on the sphere, its length 1 but for rounding.
+    pub(crate) fn direction(&mut self) -> DVec3 {
+        let height = self.between(-1.0, 1.0);
+        let around = self.between(0.0, std::f64::consts::TAU);
+        let across = ((1.0 - height) * (1.0 + height)).sqrt();
+        DVec3::new(across * around.cos(), across * around.sin(), height)
+    }
+}
+
+/// The largest error met, in units of the limit derived for it and in units in the last place.
+///
+/// `cargo test -- --nocapture` shows the numbers measured.
+pub(crate) struct Worst {
+    quantity: &'static str,
+    measured: usize,
+    of_limit: f64,
+    of_limit_case: String,
+    ulps: f64,
+    ulps_case: String,
+}
+
+impl Worst {
+    pub(crate) fn new(quantity: &'static str) -> Self {
+        Self {
+            quantity,
+            measured: 0,
+            of_limit: 0.0,
+            of_limit_case: String::new(),
+            ulps: 0.0,
+            ulps_case: String::new(),
+        }
+    }
+
+    /// Takes down an `error`, the `limit` derived for it and the `size` of what it is an error of.
+    pub(crate) fn record(
+        &mut self,
+        error: f64,
+        limit: f64,
+        size: f64,
+        case: impl FnOnce() -> String,
+    ) {
+        self.measured += 1;
+        let of_limit = if error == 0.0 { 0.0 } else { error / limit };
+        let ulps = if error == 0.0 {
+            0.0
+        } else {
+            error / (size * f64::EPSILON)
+        };
+        // Written so that NaN counts as worse than anything.
+        let beyond = !(of_limit <= self.of_limit);
+        let wider = !(ulps <= self.ulps);
+        if beyond || wider {
+            let case = case();
+            if beyond && !self.of_limit.is_nan() {
+                (self.of_limit, self.of_limit_case) = (of_limit, case.clone());
+            }
+            if wider && !self.ulps.is_nan() {
+                (self.ulps, self.ulps_case) = (ulps, case);
+            }
+        }
+    }
+
+    /// Panics if an error was over its limit, or if nothing was measured at all.
+    #[track_caller]
+    pub(crate) fn check(&self) {
+        assert!(self.measured > 0, "{}: nothing measured", self.quantity);
+        println!(
+            "{}: worst {:.3e} of its limit ({}); worst {:.3e} units in the last place ({})",
+            self.quantity, self.of_limit, self.of_limit_case, self.ulps, self.ulps_case
+        );
+        assert!(
+            self.of_limit <= 1.0,
+            "{}: an error of {:.3e} times its limit, at {}",
+            self.quantity,
+            self.of_limit,
+            self.of_limit_case
+        );
+    }
+}

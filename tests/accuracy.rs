@@ -1,0 +1,428 @@
+//! The photosurface map and the Lorentz transformations against references in 300 digits.
+//!
+//! The oracle (`common/oracle.rs`) solves the light-cone equation in the scene frame and knows none of
+//! the formulas under test. What is given to both is taken as exact, except that the oracle
+//! brings the direction of motion to unit length, which `f64` can do only to its last place.
+//!
+//! # Where the limits come from
+//!
+//! `E` is `f64::EPSILON`; one rounding costs `E / 2`. Two kinds of error add up.
+//!
+//! *Roundings that only scale.* From `d` to a position, a time or a Doppler factor at most 20 of them
+//! follow each other without any cancellation: `RELATIVE` times the size of the result.
+//!
+//! *The direction of motion.* `n` is a unit vector only to `E`, and products such as `n x d` round to
+//! `1.5 E |d|`, as if `d` were turned by the angle `TURN = 4 E`. How a result changes when `d` is turned
+//! is a fact about the map, not about the program: at the angle `theta` from the motion
+//!
+//! - the position changes by `r (1 + (gamma - 1) sin theta)` per unit angle,
+//! - the distance seen and the time of emission by `r gamma beta sin theta`,
+//! - the Doppler factor by `gamma beta sin theta`.
+//!
+//! For a motion along an axis no product with `n` rounds, and the second kind is absent.
+
+mod common;
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use common::oracle::{self, Big, Oracle, big, big_vector, small};
+use common::{Random, Worst};
+use photosurface::{DVec3, Event, Lorentz, PhotosurfaceMap, Velocity, WorldLine};
+
+const E: f64 = f64::EPSILON;
+const RELATIVE: f64 = 10.0 * E;
+const TURN: f64 = 4.0 * E;
+
+/// One point and one observer who is moving past it.
+struct Case {
+    velocity: Velocity,
+    offset: DVec3,
+    /// Whether the motion is along an axis, so that products with its direction are exact.
+    along_axis: bool,
+}
+
+impl Case {
+    fn describe(&self) -> String {
+        format!(
+            "rapidity {}, direction {}, offset {:?}",
+            self.velocity.rapidity(),
+            self.velocity.direction(),
+            self.offset.to_array()
+        )
+    }
+
+    /// The size of the possible turn of the offset.
+    fn turn(&self) -> f64 {
+        if self.along_axis { 0.0 } else { TURN }
+    }
+
+    fn distance(&self) -> f64 {
+        self.offset.length()
+    }
+
+    /// Sine of the angle between offset and motion.
+    fn sin_theta(&self) -> f64 {
+        self.velocity.direction().cross(self.offset).length() / self.distance()
+    }
+}
+
+/// Observers from rest to `1 - beta = 1e-13`, points 1e-9 to 1e9 away, straight ahead, straight
+/// behind, all but straight, and anywhere.
+fn for_each_case(mut visit: impl FnMut(&Case, &mut Random)) {
+    let rapidities = [
+        0.0, 1e-8, 0.01, 0.5, 1.0, 2.0, 3.5, 5.0, 7.5, 10.0, 12.5, 15.0,
+    ];
+    let from_straight = [0.0, 1e-12, 1e-7, 1e-3, 0.1, 0.7];
+    let mut random = Random::new(1);
+    for rapidity in rapidities {
+        let axes = [DVec3::X, DVec3::NEG_Y, DVec3::Z].map(|axis| (axis, true));
+        let mut directions = axes.to_vec();
+        directions.extend((0..4).map(|_| (random.direction(), false)));
+        for (direction, along_axis) in directions {
+            let velocity = Velocity::from_rapidity(rapidity, direction).expect("valid");
+            let ahead = from_straight.iter().copied();
+            let behind = from_straight.iter().map(|angle| PI - angle);
+            for angle in ahead.chain([FRAC_PI_2]).chain(behind) {
+                let n = velocity.direction();
+                let aside = n.cross(random.direction()).normalize();
+                // The sine by hand: sin(PI) is not zero.
+                let sine = if angle == PI { 0.0 } else { angle.sin() };
+                let distance = 10f64.powf(random.between(-9.0, 9.0));
+                let case = Case {
+                    velocity,
+                    offset: (n * angle.cos() + aside * sine) * distance,
+                    along_axis,
+                };
+                visit(&case, &mut random);
+            }
+        }
+    }
+}
+
+#[test]
+fn positions_seen_are_right_to_a_few_units_in_the_last_place() {
+    let mut axis = Worst::new("position, motion along an axis");
+    let mut anywhere = Worst::new("position, any motion");
+    for_each_case(|case, _| {
+        let map = PhotosurfaceMap::new(&case.velocity);
+        let seen = Oracle::observer_moves(&case.velocity)
+            .see(&big_vector(case.offset))
+            .position();
+        let size = small(&oracle::length(&seen));
+        let swing = 1.0 + (case.velocity.gamma() - 1.0) * case.sin_theta();
+        let limit = RELATIVE * size + case.turn() * case.distance() * swing;
+        let error = oracle::vector_error(map.seen_position(case.offset), &seen);
+        let worst = if case.along_axis {
+            &mut axis
+        } else {
+            &mut anywhere
+        };
+        worst.record(error, limit, size, || case.describe());
+    });
+    axis.check();
+    anywhere.check();
+}
+
+#[test]
+fn times_of_emission_are_right_to_a_few_units_in_the_last_place() {
+    let mut axis = Worst::new("time of emission, motion along an axis");
+    let mut anywhere = Worst::new("time of emission, any motion");
+    for_each_case(|case, _| {
+        let map = PhotosurfaceMap::new(&case.velocity);
+        let sight = Oracle::observer_moves(&case.velocity).see(&big_vector(case.offset));
+        let size = small(sight.emission_time()).abs();
+        let swing = case.velocity.gamma_beta() * case.sin_theta();
+        let limit = RELATIVE * size + case.turn() * case.distance() * swing;
+        let error = oracle::error(map.emission_time(case.offset), sight.emission_time());
+        let worst = if case.along_axis {
+            &mut axis
+        } else {
+            &mut anywhere
+        };
+        worst.record(error, limit, size, || case.describe());
+    });
+    axis.check();
+    anywhere.check();
+}
+
+#[test]
+fn doppler_factors_are_right_to_a_few_units_in_the_last_place() {
+    let mut axis = Worst::new("Doppler factor, motion along an axis");
+    let mut anywhere = Worst::new("Doppler factor, any motion");
+    for_each_case(|case, _| {
+        let map = PhotosurfaceMap::new(&case.velocity);
+        let factor =
+            Oracle::observer_moves(&case.velocity).doppler_factor(&big_vector(case.offset));
+        let size = small(&factor);
+        let swing = case.velocity.gamma_beta() * case.sin_theta();
+        let limit = RELATIVE * size + case.turn() * swing;
+        let error = oracle::error(map.doppler_factor(case.offset), &factor);
+        let worst = if case.along_axis {
+            &mut axis
+        } else {
+            &mut anywhere
+        };
+        worst.record(error, limit, size, || case.describe());
+    });
+    axis.check();
+    anywhere.check();
+}
+
+/// `J = I + n b^T - n n^T` with `b = D n + gamma beta d_across / r`: relative roundings cost
+/// `RELATIVE` times `1 + |b|`; turning `d` or `n` changes `d_across / r` by as much, hence `J` by
+/// `1 + D + 2 gamma beta` at most. Along an axis each entry of `J` is one product.
+#[test]
+fn jacobians_are_right_to_a_few_units_in_the_last_place() {
+    let mut axis = Worst::new("Jacobian entry, motion along an axis");
+    let mut anywhere = Worst::new("Jacobian, any motion");
+    for_each_case(|case, _| {
+        let oracle = Oracle::observer_moves(&case.velocity);
+        let at = big_vector(case.offset);
+        let jacobian = PhotosurfaceMap::new(&case.velocity).jacobian(case.offset);
+        let mut squared_error = 0.0;
+        let mut squared_size = 0.0;
+        for (axis_index, direction) in DVec3::AXES.iter().enumerate() {
+            let exact = oracle.derivative(&at, &big_vector(*direction));
+            let column = jacobian.col(axis_index);
+            for row in 0..3 {
+                let size = small(&exact[row]).abs();
+                let error = oracle::error(column[row], &exact[row]);
+                if case.along_axis {
+                    axis.record(error, RELATIVE * size, size, || {
+                        format!("{}, row {row}, column {axis_index}", case.describe())
+                    });
+                }
+                squared_error += error * error;
+                squared_size += size * size;
+            }
+        }
+        if !case.along_axis {
+            let doppler = small(&oracle.doppler_factor(&at));
+            let b = doppler.hypot(case.velocity.gamma_beta() * case.sin_theta());
+            let swing = 1.0 + doppler + 2.0 * case.velocity.gamma_beta();
+            let limit = RELATIVE * (1.0 + b) + TURN * swing;
+            anywhere.record(squared_error.sqrt(), limit, squared_size.sqrt(), || {
+                case.describe()
+            });
+        }
+    });
+    axis.check();
+    anywhere.check();
+}
+
+/// With `m` the normal at rest and `s = d_across / r`, the normal is along
+/// `M = D m_across + (m.n) (n - gamma beta s)`. Its parts across the motion may cancel: a relative
+/// error in them counts as `D |m_across| + |m.n| (1 + gamma beta |s|)` over `|M|`. A turn `t` of `d` or
+/// `n` changes `m_across`, `m.n` and `s` by `t` and `D` by `t gamma beta |s|`.
+#[test]
+fn normals_are_right_to_a_few_units_in_the_last_place() {
+    let mut axis = Worst::new("normal, motion along an axis");
+    let mut anywhere = Worst::new("normal, any motion");
+    for_each_case(|case, random| {
+        let n = case.velocity.direction();
+        let normals = [
+            random.direction(),
+            n,
+            n.any_orthonormal_vector(),
+            -case.offset / case.distance(),
+        ];
+        for normal in normals {
+            let exact =
+                Oracle::observer_moves(&case.velocity).normal(&big_vector(case.offset), normal);
+            let map = PhotosurfaceMap::new(&case.velocity);
+            let gamma_beta = case.velocity.gamma_beta();
+            let doppler = map.doppler_factor(case.offset);
+            let s = n.cross(case.offset).cross(n) / case.distance();
+            let along = n.dot(normal);
+            let m_across = n.cross(normal).cross(n);
+            let slant = (n - s * gamma_beta).length();
+            let length = (m_across * doppler + (n - s * gamma_beta) * along).length();
+            let parts = doppler * m_across.length() + along.abs() * (1.0 + gamma_beta * s.length());
+            let swing = gamma_beta * s.length() * m_across.length()
+                + doppler
+                + slant
+                + along.abs() * (1.0 + gamma_beta);
+            let limit = (RELATIVE * parts + case.turn() * swing) / length + RELATIVE;
+            let error = oracle::vector_error(map.seen_normal(case.offset, normal), &exact);
+            let worst = if case.along_axis {
+                &mut axis
+            } else {
+                &mut anywhere
+            };
+            worst.record(error, limit, 1.0, || {
+                format!("{}, normal {:?}", case.describe(), normal.to_array())
+            });
+        }
+    });
+    axis.check();
+    anywhere.check();
+}
+
+/// The oracle itself: an object that rushes at an observer at rest is the same physics as an observer
+/// who rushes at an object at rest, and its two calculations have no number in common.
+#[test]
+fn the_oracle_agrees_with_itself_in_two_frames() {
+    let mut random = Random::new(2);
+    for rapidity in [0.3, 3.0, 15.0] {
+        let velocity = Velocity::from_rapidity(rapidity, random.direction()).expect("valid");
+        let vertex = big_vector(random.direction() * 3.0);
+        let moving_observer = Oracle::observer_moves(&velocity).see(&vertex);
+        let moving_object = Oracle::new(
+            DVec3::ZERO,
+            &velocity.reversed(),
+            Event::default(),
+            &Velocity::ZERO,
+        )
+        .see(&vertex);
+        for (a, b) in moving_observer.event.iter().zip(&moving_object.event) {
+            assert!(small(&(a.clone() - b)).abs() < 1e-200);
+        }
+    }
+}
+
+/// The textbook form `gamma (d_par + beta r)` behind an observer at `1 - beta = 1e-12`: it keeps six
+/// digits, the map all but the last.
+#[test]
+fn a_point_behind_a_fast_observer_keeps_its_digits() {
+    let velocity = Velocity::from_one_minus_beta(1e-12, DVec3::NEG_X).expect("valid");
+    let offset = DVec3::new(1.0, 0.001, 0.0);
+    let seen = Oracle::observer_moves(&velocity)
+        .see(&big_vector(offset))
+        .position();
+    let size = small(&oracle::length(&seen));
+    let map = PhotosurfaceMap::new(&velocity);
+    assert!(oracle::vector_error(map.seen_position(offset), &seen) <= RELATIVE * size);
+
+    let beta = 1.0 - 1e-12;
+    let gamma = 1.0 / (1.0f64 - beta * beta).sqrt();
+    let textbook = gamma * (offset.x - beta * offset.length());
+    assert!(oracle::error(textbook, &seen[0]) > 1e4 * RELATIVE * size);
+}
+
+/// A pair of boosts, first and second, and what their directions make of rounding.
+struct Pair {
+    first: Velocity,
+    second: Velocity,
+}
+
+impl Pair {
+    /// All pairs of slow and fast, and of directions that are anywhere, perpendicular, nearly equal
+    /// and nearly opposite, down to the neighbouring float.
+    fn all() -> Vec<Self> {
+        let rapidities = [1e-9, 0.1, 1.0, 3.0, 10.0, 30.0, 150.0];
+        let between = [1e-16, 1e-12, 1e-8, 1e-4, 0.1, 1.0, FRAC_PI_2];
+        let mut random = Random::new(3);
+        let mut pairs = Vec::new();
+        for first_rapidity in rapidities {
+            for second_rapidity in rapidities.into_iter().chain([first_rapidity + 1e-9]) {
+                for angle in between.into_iter().chain(between.map(|angle| PI - angle)) {
+                    let direction = random.direction();
+                    let aside = direction.cross(random.direction()).normalize();
+                    let other = direction * angle.cos() + aside * angle.sin();
+                    pairs.push(Self {
+                        first: Velocity::from_rapidity(first_rapidity, direction).expect("valid"),
+                        second: Velocity::from_rapidity(second_rapidity, other).expect("valid"),
+                    });
+                }
+            }
+        }
+        pairs
+    }
+
+    fn describe(&self) -> String {
+        format!("{:?} then {:?}", self.first, self.second)
+    }
+
+    fn composed(&self) -> Lorentz {
+        Lorentz::boost(self.first).then(&Lorentz::boost(self.second))
+    }
+
+    /// What a change of either direction by a unit angle can do, at most, to
+    /// `v = c1 s2 n2 + s1 c2 n1` and to `w = s1 s2 n2 x n1` (hyperbolic functions of half the
+    /// rapidities; `|v| = sinh`, `hypot(alpha, w) = cosh` of half the resulting rapidity).
+    fn swings(&self) -> (f64, f64) {
+        let (first, second) = (0.5 * self.first.rapidity(), 0.5 * self.second.rapidity());
+        (
+            first.sinh() * second.cosh() + first.cosh() * second.sinh(),
+            first.sinh() * second.sinh(),
+        )
+    }
+}
+
+/// The rapidity, the direction and the rotation that a product of Lorentz matrices amounts to.
+fn decompose(matrix: &oracle::Matrix) -> (Big, oracle::Vector, oracle::Matrix) {
+    // Row 0 is (gamma, -gamma beta n); exp(eta) = gamma + gamma beta.
+    let minus_gamma_beta_n: oracle::Vector = std::array::from_fn(|i| matrix[0][i + 1].clone());
+    let gamma_beta = oracle::length(&minus_gamma_beta_n);
+    let rapidity = (matrix[0][0].clone() + &gamma_beta).ln();
+    let direction = minus_gamma_beta_n.map(|component| -component / &gamma_beta);
+
+    // Undo the boost: I + (gamma - 1) n n^T in space, gamma beta n where space and time mix.
+    let gamma = &matrix[0][0];
+    let boost_back: oracle::Matrix = std::array::from_fn(|row| {
+        std::array::from_fn(|column| match (row, column) {
+            (0, 0) => gamma.clone(),
+            (0, i) | (i, 0) => gamma_beta.clone() * &direction[i - 1],
+            (i, j) => {
+                let unit = big(if i == j { 1.0 } else { 0.0 });
+                unit + (gamma.clone() - big(1.0)) * &direction[i - 1] * &direction[j - 1]
+            }
+        })
+    });
+    let rotation = oracle::product(matrix, &boost_back);
+    (rapidity, direction, rotation)
+}
+
+/// The largest distance between where two rotations turn the axes.
+fn rotation_error(transformation: &Lorentz, exact: &oracle::Matrix) -> f64 {
+    let axes = DVec3::AXES.iter().enumerate();
+    axes.map(|(column, axis)| {
+        let exact: oracle::Vector = std::array::from_fn(|row| exact[row + 1][column + 1].clone());
+        oracle::vector_error(transformation.rotation() * *axis, &exact)
+    })
+    .fold(0.0, f64::max)
+}
+
+/// The rapidity follows from `|v| = sinh(eta / 2)`, so an error of `|v|` counts `2 / cosh(eta / 2)` times:
+/// `RELATIVE` at most where it is relative, and `TURN` times its swing from the directions.
+#[test]
+fn rapidities_compose_to_a_few_units_in_the_last_place() {
+    let mut worst = Worst::new("composed rapidity");
+    for pair in Pair::all() {
+        let product = oracle::product(&oracle::boost(&pair.second), &oracle::boost(&pair.first));
+        let (rapidity, ..) = decompose(&product);
+        let size = small(&rapidity);
+        let (swing, _) = pair.swings();
+        let limit = RELATIVE * size + 2.0 * TURN * swing / (0.5 * size).cosh();
+        let error = oracle::error(pair.composed().boost_velocity().rapidity(), &rapidity);
+        worst.record(error, limit, size, || pair.describe());
+    }
+    worst.check();
+}
+
+/// The direction is that of `v`, turned by the rotation's half: errors of `v` count against `|v|`,
+/// those of `w` against `cosh(eta / 2)`.
+#[test]
+fn directions_compose_to_a_few_units_in_the_last_place() {
+    let mut directions = Worst::new("composed direction");
+    let mut rotations = Worst::new("Wigner rotation");
+    for pair in Pair::all() {
+        let product = oracle::product(&oracle::boost(&pair.second), &oracle::boost(&pair.first));
+        let (rapidity, direction, rotation) = decompose(&product);
+        let half = 0.5 * small(&rapidity);
+        let (velocity_swing, rotation_swing) = pair.swings();
+        let turned = TURN * rotation_swing / half.cosh();
+        let composed = pair.composed();
+
+        let limit = RELATIVE + TURN * velocity_swing / half.sinh() + turned;
+        let error = oracle::vector_error(composed.boost_velocity().direction(), &direction);
+        directions.record(error, limit, 1.0, || pair.describe());
+
+        // The angle of a rotation is twice that of its quaternion.
+        let limit = RELATIVE + 2.0 * turned;
+        let error = rotation_error(&composed, &rotation);
+        rotations.record(error, limit, 1.0, || pair.describe());
+    }
+    directions.check();
+    rotations.check();
+}
