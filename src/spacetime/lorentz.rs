@@ -45,8 +45,10 @@ impl Lorentz {
     ///
     /// # Accuracy
     ///
-    /// Rapidity, directions and rotation to a few units in the last place, at any pair of velocities
-    /// (`tests/accuracy.rs`); collinear boosts compose to the exact sum of their rapidities.
+    /// Rapidity, direction and rotation to a few units in the last place, at any pair of velocities, but
+    /// for what the rounding of the given directions does to them: where these are all but
+    /// opposite, `cosh` of half the larger rapidity times as much (`tests/lorentz.rs`). Collinear
+    /// boosts compose to the exact sum of their rapidities.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         // (R2 B2) (R1 B1) = R2 R1 (R1^-1 B2 R1) B1: the second boost as seen before the first rotation.

@@ -8,7 +8,29 @@
 
 pub(crate) mod oracle;
 
-use photosurface::DVec3;
+use photosurface::{DVec3, Velocity};
+
+/// What relative roundings may add up to in one result: one costs half an epsilon, and from given
+/// numbers to a position, time, Doppler factor, rapidity... at most 20 follow each other.
+pub(crate) const RELATIVE: f64 = 10.0 * f64::EPSILON;
+
+/// How far, in radians, a direction may seem turned: a unit vector is known to its last place, and
+/// sums of products with it (`n.d`, `n x d`, twice in a row) round by `1.5` epsilon of `|d|` each.
+pub(crate) const TURN: f64 = 4.0 * f64::EPSILON;
+
+/// What turning either direction by a unit angle can do, at most, to the parts `v = c1 s2 n2 + s1 c2 n1`
+/// and `w = s1 s2 n2 x n1` of two boosts' product.
+///
+/// `c`, `s` are hyperbolic functions of half the rapidities. The resulting rapidity has
+/// `|v| = sinh(eta / 2)`, the angle of the rotation has `tan(angle / 2) = |w| / alpha`, and
+/// `hypot(alpha, |w|) = cosh(eta / 2)`.
+pub(crate) fn composition_swings(first: &Velocity, second: &Velocity) -> (f64, f64) {
+    let (first, second) = (0.5 * first.rapidity(), 0.5 * second.rapidity());
+    (
+        first.sinh() * second.cosh() + first.cosh() * second.sinh(),
+        first.sinh() * second.sinh(),
+    )
+}
 
 /// Repeatable pseudo-random numbers (SplitMix64: Steele, Lea, Flood 2014).
 pub(crate) struct Random(u64);

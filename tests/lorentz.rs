@@ -1,0 +1,247 @@
+//! Lorentz transformations against products of 4x4 matrices in 300 digits.
+//!
+//! The library composes in SL(2,C) from rapidities and half angles; the reference multiplies the
+//! matrices of the boosts and takes the product apart. Limits: see `common/mod.rs`.
+
+mod common;
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use common::oracle::{self, Big, big, big_vector, small};
+use common::{RELATIVE, Random, TURN, Worst, composition_swings};
+use photosurface::{DVec3, Event, Lorentz, Velocity};
+
+/// A pair of boosts, first and second, and what their directions make of rounding.
+struct Pair {
+    first: Velocity,
+    second: Velocity,
+}
+
+impl Pair {
+    /// All pairs of slow and fast, and of directions that are anywhere, perpendicular, nearly equal
+    /// and nearly opposite, down to the neighbouring float.
+    fn all() -> Vec<Self> {
+        let rapidities = [1e-9, 0.1, 1.0, 3.0, 10.0, 30.0, 150.0];
+        let between = [1e-16, 1e-12, 1e-8, 1e-4, 0.1, 1.0, FRAC_PI_2];
+        let mut random = Random::new(3);
+        let mut pairs = Vec::new();
+        for first_rapidity in rapidities {
+            for second_rapidity in rapidities.into_iter().chain([first_rapidity + 1e-9]) {
+                for angle in between.into_iter().chain(between.map(|angle| PI - angle)) {
+                    let direction = random.direction();
+                    let aside = direction.cross(random.direction()).normalize();
+                    let other = direction * angle.cos() + aside * angle.sin();
+                    pairs.push(Self {
+                        first: Velocity::from_rapidity(first_rapidity, direction).expect("valid"),
+                        second: Velocity::from_rapidity(second_rapidity, other).expect("valid"),
+                    });
+                }
+            }
+        }
+        pairs
+    }
+
+    fn describe(&self) -> String {
+        format!("{:?} then {:?}", self.first, self.second)
+    }
+
+    fn composed(&self) -> Lorentz {
+        Lorentz::boost(self.first).then(&Lorentz::boost(self.second))
+    }
+
+    fn swings(&self) -> (f64, f64) {
+        composition_swings(&self.first, &self.second)
+    }
+}
+
+/// The rapidity, the direction and the rotation that a product of Lorentz matrices amounts to.
+fn decompose(matrix: &oracle::Matrix) -> (Big, oracle::Vector, oracle::Matrix) {
+    // Row 0 is (gamma, -gamma beta n); exp(eta) = gamma + gamma beta.
+    let minus_gamma_beta_n: oracle::Vector = std::array::from_fn(|i| matrix[0][i + 1].clone());
+    let gamma_beta = oracle::length(&minus_gamma_beta_n);
+    let rapidity = (matrix[0][0].clone() + &gamma_beta).ln();
+    let direction = minus_gamma_beta_n.map(|component| -component / &gamma_beta);
+
+    // Undo the boost: I + (gamma - 1) n n^T in space, gamma beta n where space and time mix.
+    let gamma = &matrix[0][0];
+    let boost_back: oracle::Matrix = std::array::from_fn(|row| {
+        std::array::from_fn(|column| match (row, column) {
+            (0, 0) => gamma.clone(),
+            (0, i) | (i, 0) => gamma_beta.clone() * &direction[i - 1],
+            (i, j) => {
+                let unit = big(if i == j { 1.0 } else { 0.0 });
+                unit + (gamma.clone() - big(1.0)) * &direction[i - 1] * &direction[j - 1]
+            }
+        })
+    });
+    let rotation = oracle::product(matrix, &boost_back);
+    (rapidity, direction, rotation)
+}
+
+/// The largest distance between where two rotations turn the axes.
+fn rotation_error(transformation: &Lorentz, exact: &oracle::Matrix) -> f64 {
+    let axes = DVec3::AXES.iter().enumerate();
+    axes.map(|(column, axis)| {
+        let exact: oracle::Vector = std::array::from_fn(|row| exact[row + 1][column + 1].clone());
+        oracle::vector_error(transformation.rotation() * *axis, &exact)
+    })
+    .fold(0.0, f64::max)
+}
+
+/// The rapidity follows from `|v| = sinh(eta / 2)`, so an error of `|v|` counts `2 / cosh(eta / 2)` times:
+/// `RELATIVE` at most where it is relative, and `TURN` times its swing from the directions.
+#[test]
+fn rapidities_compose_to_a_few_units_in_the_last_place() {
+    let mut worst = Worst::new("composed rapidity");
+    for pair in Pair::all() {
+        let product = oracle::product(&oracle::boost(&pair.second), &oracle::boost(&pair.first));
+        let (rapidity, ..) = decompose(&product);
+        let size = small(&rapidity);
+        let (swing, _) = pair.swings();
+        let limit = RELATIVE * size + 2.0 * TURN * swing / (0.5 * size).cosh();
+        let error = oracle::error(pair.composed().boost_velocity().rapidity(), &rapidity);
+        worst.record(error, limit, size, || pair.describe());
+    }
+    worst.check();
+}
+
+/// The direction is that of `v`, turned by the rotation's half: errors of `v` count against `|v|`,
+/// those of `w` against `cosh(eta / 2)`.
+#[test]
+fn directions_compose_to_a_few_units_in_the_last_place() {
+    let mut directions = Worst::new("composed direction");
+    let mut rotations = Worst::new("Wigner rotation");
+    for pair in Pair::all() {
+        let product = oracle::product(&oracle::boost(&pair.second), &oracle::boost(&pair.first));
+        let (rapidity, direction, rotation) = decompose(&product);
+        let half = 0.5 * small(&rapidity);
+        let (velocity_swing, rotation_swing) = pair.swings();
+        let turned = TURN * rotation_swing / half.cosh();
+        let composed = pair.composed();
+
+        let limit = RELATIVE + TURN * velocity_swing / half.sinh() + turned;
+        let error = oracle::vector_error(composed.boost_velocity().direction(), &direction);
+        directions.record(error, limit, 1.0, || pair.describe());
+
+        // The angle of a rotation is twice that of its quaternion.
+        let limit = RELATIVE + 2.0 * turned;
+        let error = rotation_error(&composed, &rotation);
+        rotations.record(error, limit, 1.0, || pair.describe());
+    }
+    directions.check();
+    rotations.check();
+}
+
+/// The matrix of what the library computed.
+fn matrix_of(transformation: &Lorentz) -> oracle::Matrix {
+    let columns = DVec3::AXES.map(|axis| big_vector(transformation.rotation() * axis));
+    let rotation: oracle::Matrix = std::array::from_fn(|row| {
+        std::array::from_fn(|column| match (row, column) {
+            (0, 0) => big(1.0),
+            (0, _) | (_, 0) => big(0.0),
+            (i, j) => columns[j - 1][i - 1].clone(),
+        })
+    });
+    oracle::product(&rotation, &oracle::boost(&transformation.boost_velocity()))
+}
+
+fn largest_difference(a: &oracle::Matrix, b: &oracle::Matrix) -> f64 {
+    let entries = a.iter().flatten().zip(b.iter().flatten());
+    entries
+        .map(|(a, b)| small(&(a.clone() - b)).abs())
+        .fold(0.0, f64::max)
+}
+
+/// A boost is a matrix of norm `exp(eta)`. Each is given, and each product rounded, as if its direction
+/// were turned by `TURN` and its rapidity and rotation changed by `RELATIVE` times themselves.
+#[test]
+fn chains_of_boosts_act_like_products_of_matrices() {
+    let mut chains = Worst::new("three boosts in a row");
+    let mut inverses = Worst::new("three boosts and back");
+    let mut random = Random::new(4);
+    for _ in 0..1000 {
+        let mut whole = Lorentz::IDENTITY;
+        let mut exact = oracle::boost(&Velocity::ZERO);
+        let mut total = 0.0;
+        for _ in 0..3 {
+            let rapidity = random.between(0.0, 30.0);
+            let velocity = Velocity::from_rapidity(rapidity, random.direction()).expect("valid");
+            whole = whole.then(&Lorentz::boost(velocity));
+            exact = oracle::product(&oracle::boost(&velocity), &exact);
+            total += rapidity;
+        }
+        let change = 3.0 * (2.0 * TURN + RELATIVE * (1.0 + total));
+        let error = largest_difference(&matrix_of(&whole), &exact);
+        chains.record(error, change * total.exp(), total.exp(), || {
+            format!("{whole:?}")
+        });
+
+        // Going back there is one boost and one rotation of a direction.
+        let there_and_back = oracle::product(&matrix_of(&whole.inverse()), &matrix_of(&whole));
+        let error = largest_difference(&there_and_back, &oracle::boost(&Velocity::ZERO));
+        let size = (2.0 * whole.boost_velocity().rapidity()).exp();
+        inverses.record(error, 2.0 * TURN * size, size, || format!("{whole:?}"));
+    }
+    chains.check();
+    inverses.check();
+}
+
+/// Light-cone coordinates are multiplied by `exp(eta)` and `exp(-eta)`, so both the result and its
+/// error may grow by `exp(eta)`: relative roundings and turned directions of the event's own size.
+#[test]
+fn events_transform_like_columns_and_keep_their_interval() {
+    let mut events = Worst::new("transformed event");
+    let mut intervals = Worst::new("interval");
+    let mut random = Random::new(5);
+    for _ in 0..2000 {
+        let rapidity = random.between(0.0, 30.0);
+        let velocity = Velocity::from_rapidity(rapidity, random.direction()).expect("valid");
+        let event = Event::new(random.between(-5.0, 5.0), random.direction() * 3.0);
+        let transformed = Lorentz::boost(velocity).apply(event);
+
+        let [x, y, z] = big_vector(event.position);
+        let [time, x, y, z] = oracle::apply(&oracle::boost(&velocity), &[big(event.time), x, y, z]);
+        let error = oracle::error(transformed.time, &time)
+            .hypot(oracle::vector_error(transformed.position, &[x, y, z]));
+        let size = event.time.abs() + event.position.length();
+        let case = || format!("{event:?}, {velocity:?}");
+        let limit = (RELATIVE + TURN) * rapidity.exp() * size;
+        events.record(error, limit, rapidity.exp() * size, case);
+
+        // A product of two coordinates, each of which may be in error that much.
+        let new_size = transformed.time.abs() + transformed.position.length();
+        let difference = (transformed.interval() - event.interval()).abs();
+        intervals.record(
+            difference,
+            2.0 * limit * new_size,
+            new_size * new_size,
+            case,
+        );
+    }
+    events.check();
+    intervals.check();
+}
+
+#[test]
+fn collinear_boosts_compose_to_the_sum_of_rapidities_exactly() {
+    let mut random = Random::new(6);
+    for _ in 0..1000 {
+        let direction = random.direction();
+        // Multiples of 2^-40 up to 150: their sums and differences are numbers, too.
+        let grid = |value: f64| (value * 2f64.powi(40)).round() * 2f64.powi(-40);
+        let [a, b] = [150.0, 150.0].map(|most| grid(random.between(0.0, most)));
+        let first = Velocity::from_rapidity(a, direction).expect("valid");
+        let second = Velocity::from_rapidity(b, direction).expect("valid");
+
+        let together = Lorentz::boost(first).then(&Lorentz::boost(second));
+        assert_eq!(together, Lorentz::boost(together.boost_velocity()));
+        assert_eq!(together.boost_velocity().rapidity(), a + b);
+        assert_eq!(together.boost_velocity().direction(), first.direction());
+
+        let relative = Lorentz::between(first, second);
+        assert_eq!(relative, Lorentz::boost(relative.boost_velocity()));
+        assert_eq!(relative.boost_velocity().rapidity(), (b - a).abs());
+        let forward = first.direction() * (b - a).signum();
+        assert_eq!(relative.boost_velocity().direction(), forward);
+    }
+}

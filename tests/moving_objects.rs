@@ -1,0 +1,124 @@
+//! Several moving objects and a moving observer, against their worldlines in the scene frame.
+
+mod common;
+
+use common::oracle::{self, Oracle, big_vector, small};
+use common::{RELATIVE, Random, TURN, Worst, composition_swings};
+use photosurface::{DVec3, Event, Lorentz, PhotosurfaceMap, Velocity, WorldLine};
+
+/// Two objects and an observer, all in motion in different directions, at several moments of the
+/// observer's clock: what the library makes of it in the objects' rest frames against the worldlines
+/// in the scene frame.
+///
+/// Four things are uncertain: the relative velocity and the rotation (limits as above); the
+/// observer's place in the rest frame, to `exp(eta)` of the object times the roundings of the event,
+/// magnified by the map's derivative, at most `exp(eta) + 1` of the relative rapidity; and the map's own
+/// roundings.
+#[test]
+fn moving_objects_are_seen_where_their_worldlines_meet_the_light_cone() {
+    let mut positions = Worst::new("moving objects: position");
+    let mut dopplers = Worst::new("moving objects: Doppler factor");
+    let mut normals = Worst::new("moving objects: normal");
+    let along = |rapidity, direction| Velocity::from_rapidity(rapidity, direction).expect("valid");
+    let tilted = DVec3::new(0.3, -0.5, 0.6);
+    let observers = [
+        along(0.0, DVec3::X),
+        along(1.2, DVec3::new(-1.0, 0.2, 0.1)),
+        along(6.0, tilted),
+        along(15.0, DVec3::Z),
+    ];
+    let objects = [
+        (DVec3::new(0.0, 3.0, -1.0), along(0.7, DVec3::Y)),
+        (
+            DVec3::new(-4.0, 0.5, 2.0),
+            along(3.0, DVec3::new(1.0, 1.0, -0.2)),
+        ),
+        (DVec3::new(2.0, -2.0, 1.0), along(8.0, -tilted)),
+        (DVec3::new(1.0, 1.0, -5.0), along(15.0, DVec3::NEG_Z)),
+    ];
+    let mut random = Random::new(7);
+    for observer_velocity in observers {
+        let flight = WorldLine {
+            origin: Event::new(0.5, DVec3::new(1.0, -0.25, 0.125)),
+            velocity: observer_velocity,
+        };
+        for (object_position, object_velocity) in objects {
+            for proper_time in [-3.0, 0.0, 2.5] {
+                let event = flight.at(proper_time);
+                let to_rest = Lorentz::boost(object_velocity);
+                let rest_to_observer = Lorentz::between(object_velocity, observer_velocity);
+                let from_origin = event - Event::new(0.0, object_position);
+                let observer_rest = to_rest.apply(from_origin).position;
+                let map = PhotosurfaceMap::new(&rest_to_observer.boost_velocity());
+                let rotation = rest_to_observer.rotation();
+                let oracle =
+                    Oracle::new(object_position, &object_velocity, event, &observer_velocity);
+
+                let relative = rest_to_observer.boost_velocity();
+                let (swing, rotation_swing) =
+                    composition_swings(&object_velocity, &observer_velocity);
+                let half = 0.5 * relative.rapidity();
+                let turned = RELATIVE + 2.0 * TURN * rotation_swing / half.cosh();
+                let rapidity_error =
+                    RELATIVE * relative.rapidity() + 2.0 * TURN * swing / half.cosh();
+                let direction_error = turned + TURN * swing / half.sinh();
+                let place_error = (RELATIVE + TURN)
+                    * object_velocity.rapidity().exp()
+                    * (from_origin.time.abs() + from_origin.position.length());
+
+                for _ in 0..10 {
+                    let vertex = random.direction() * random.between(0.1, 2.0);
+                    let normal_rest = random.direction();
+                    let offset = vertex - observer_rest;
+                    let case = || {
+                        format!(
+                            "object {object_velocity:?} at {object_position}, vertex {vertex}, \
+                             observer {observer_velocity:?} at {event:?}"
+                        )
+                    };
+
+                    let seen = oracle.see(&big_vector(vertex)).position();
+                    let size = small(&oracle::length(&seen));
+                    let (r, doppler) = (offset.length(), map.doppler_factor(offset));
+                    let sine = relative.direction().cross(offset).length() / r;
+                    let gamma_beta = relative.gamma_beta();
+                    let angle_error = direction_error + TURN + place_error / r;
+                    let limit = (RELATIVE + turned + rapidity_error + direction_error) * size
+                        + angle_error * r * (1.0 + relative.gamma() * sine)
+                        + place_error * doppler;
+                    let error = oracle::vector_error(rotation * map.seen_position(offset), &seen);
+                    positions.record(error, limit, size, case);
+
+                    let exact = oracle.doppler_factor(&big_vector(vertex));
+                    let limit =
+                        (RELATIVE + rapidity_error) * doppler + angle_error * gamma_beta * sine;
+                    let size = small(&exact);
+                    dopplers.record(oracle::error(doppler, &exact), limit, size, case);
+
+                    // As for one object, with more in the angles and in the rapidity.
+                    let n = relative.direction();
+                    let s = n.cross(offset).cross(n) / r;
+                    let along = n.dot(normal_rest);
+                    let m_across = n.cross(normal_rest).cross(n);
+                    let slant = n - s * gamma_beta;
+                    let length = (m_across * doppler + slant * along).length();
+                    let parts =
+                        doppler * m_across.length() + along.abs() * (1.0 + gamma_beta * s.length());
+                    let swing = gamma_beta * s.length() * m_across.length()
+                        + doppler
+                        + slant.length()
+                        + along.abs() * (1.0 + gamma_beta);
+                    let limit = turned
+                        + ((RELATIVE + rapidity_error) * parts + angle_error * swing) / length;
+                    let exact = oracle.normal(&big_vector(vertex), normal_rest);
+                    let normal = rotation * map.seen_normal(offset, normal_rest);
+                    let error = oracle::vector_error(normal, &exact);
+                    normals.record(error, limit, 1.0, case);
+                }
+            }
+        }
+    }
+    positions.check();
+    dopplers.check();
+    normals.check();
+}
