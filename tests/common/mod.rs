@@ -7,6 +7,7 @@
 )]
 
 pub(crate) mod oracle;
+pub(crate) mod passing;
 
 use photosurface::{DVec3, Velocity};
 
