@@ -22,7 +22,7 @@ mod common;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use common::oracle::{self, Oracle, big_vector, small};
-use common::{RELATIVE, Random, TURN, Worst};
+use common::{RELATIVE, Random, TURN, Worst, normal_limit};
 use photosurface::{DVec3, Event, PhotosurfaceMap, Velocity};
 
 /// One point and one observer who is moving past it.
@@ -202,10 +202,6 @@ fn jacobians_are_right_to_a_few_units_in_the_last_place() {
     anywhere.check();
 }
 
-/// With `m` the normal at rest and `s = d_across / r`, the normal is along
-/// `M = D m_across + (m.n) (n - gamma beta s)`. Its parts across the motion may cancel: a relative
-/// error in them counts as `D |m_across| + |m.n| (1 + gamma beta |s|)` over `|M|`. A turn `t` of `d` or
-/// `n` changes `m_across`, `m.n` and `s` by `t` and `D` by `t gamma beta |s|`.
 #[test]
 fn normals_are_right_to_a_few_units_in_the_last_place() {
     let mut axis = Worst::new("normal, motion along an axis");
@@ -222,19 +218,7 @@ fn normals_are_right_to_a_few_units_in_the_last_place() {
             let exact =
                 Oracle::observer_moves(&case.velocity).normal(&big_vector(case.offset), normal);
             let map = PhotosurfaceMap::new(&case.velocity);
-            let gamma_beta = case.velocity.gamma_beta();
-            let doppler = map.doppler_factor(case.offset);
-            let s = n.cross(case.offset).cross(n) / case.distance();
-            let along = n.dot(normal);
-            let m_across = n.cross(normal).cross(n);
-            let slant = (n - s * gamma_beta).length();
-            let length = (m_across * doppler + (n - s * gamma_beta) * along).length();
-            let parts = doppler * m_across.length() + along.abs() * (1.0 + gamma_beta * s.length());
-            let swing = gamma_beta * s.length() * m_across.length()
-                + doppler
-                + slant
-                + along.abs() * (1.0 + gamma_beta);
-            let limit = (RELATIVE * parts + case.turn() * swing) / length + RELATIVE;
+            let limit = normal_limit(&case.velocity, case.offset, normal, RELATIVE, case.turn());
             let error = oracle::vector_error(map.seen_normal(case.offset, normal), &exact);
             let worst = if case.along_axis {
                 &mut axis

@@ -570,7 +570,7 @@ fn largest(function: impl Fn(f64) -> f64) -> f64 {
     let best = (0..360)
         .map(|i| f64::from(i) * step)
         .max_by(|a, b| function(*a).total_cmp(&function(*b)))
-        .unwrap();
+        .expect("360 angles");
     // Ternary search; near the maximum the function is flat, so the angle need not be exact.
     let (mut low, mut high) = (best - step, best + step);
     for _ in 0..80 {

@@ -3,7 +3,7 @@
 mod common;
 
 use common::oracle::{self, Oracle, big_vector, small};
-use common::{RELATIVE, Random, TURN, Worst, composition_swings};
+use common::{RELATIVE, Random, TURN, Worst, composition_swings, normal_limit};
 use photosurface::{DVec3, Event, Lorentz, PhotosurfaceMap, Velocity, WorldLine};
 
 /// Two objects and an observer, all in motion in different directions, at several moments of the
@@ -96,20 +96,14 @@ fn moving_objects_are_seen_where_their_worldlines_meet_the_light_cone() {
                     dopplers.record(oracle::error(doppler, &exact), limit, size, case);
 
                     // As for one object, with more in the angles and in the rapidity.
-                    let n = relative.direction();
-                    let s = n.cross(offset).cross(n) / r;
-                    let along = n.dot(normal_rest);
-                    let m_across = n.cross(normal_rest).cross(n);
-                    let slant = n - s * gamma_beta;
-                    let length = (m_across * doppler + slant * along).length();
-                    let parts =
-                        doppler * m_across.length() + along.abs() * (1.0 + gamma_beta * s.length());
-                    let swing = gamma_beta * s.length() * m_across.length()
-                        + doppler
-                        + slant.length()
-                        + along.abs() * (1.0 + gamma_beta);
                     let limit = turned
-                        + ((RELATIVE + rapidity_error) * parts + angle_error * swing) / length;
+                        + normal_limit(
+                            &relative,
+                            offset,
+                            normal_rest,
+                            RELATIVE + rapidity_error,
+                            angle_error,
+                        );
                     let exact = oracle.normal(&big_vector(vertex), normal_rest);
                     let normal = rotation * map.seen_normal(offset, normal_rest);
                     let error = oracle::vector_error(normal, &exact);

@@ -9,7 +9,7 @@
 pub(crate) mod oracle;
 pub(crate) mod passing;
 
-use photosurface::{DVec3, Velocity};
+use photosurface::{DVec3, PhotosurfaceMap, Velocity};
 
 /// What relative roundings may add up to in one result: one costs half an epsilon, and from given
 /// numbers to a position, time, Doppler factor, rapidity... at most 20 follow each other.
@@ -31,6 +31,36 @@ pub(crate) fn composition_swings(first: &Velocity, second: &Velocity) -> (f64, f
         first.sinh() * second.cosh() + first.cosh() * second.sinh(),
         first.sinh() * second.sinh(),
     )
+}
+
+/// The error a unit normal may have, given relative errors `relative` and directions that may be turned
+/// by `turn`.
+///
+/// With `m` the normal at rest, `n` the direction of motion, `s = d_across / r`, the normal is along
+/// `M = D m_across + (m.n) (n - gamma beta s)`. Its parts across the motion may cancel: a relative error
+/// in them counts as `D |m_across| + |m.n| (1 + gamma beta |s|)` over `|M|`. A turn of `d` or `n` changes
+/// `m_across`, `m.n` and `s` by as much and `D` by `gamma beta |s|` times that.
+pub(crate) fn normal_limit(
+    observer: &Velocity,
+    offset: DVec3,
+    normal: DVec3,
+    relative: f64,
+    turn: f64,
+) -> f64 {
+    let n = observer.direction();
+    let gamma_beta = observer.gamma_beta();
+    let doppler = PhotosurfaceMap::new(observer).doppler_factor(offset);
+    let s = n.cross(offset).cross(n) / offset.length();
+    let along = n.dot(normal);
+    let across = n.cross(normal).cross(n);
+    let slanted = n - s * gamma_beta;
+    let length = (across * doppler + slanted * along).length();
+    let parts = doppler * across.length() + along.abs() * (1.0 + gamma_beta * s.length());
+    let swing = gamma_beta * s.length() * across.length()
+        + doppler
+        + slanted.length()
+        + along.abs() * (1.0 + gamma_beta);
+    (relative * parts + turn * swing) / length + relative
 }
 
 /// Repeatable pseudo-random numbers (SplitMix64: Steele, Lea, Flood 2014).
