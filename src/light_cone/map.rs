@@ -109,10 +109,12 @@ impl PhotosurfaceMap {
     /// the observer itself, where it depends on the direction, its mean over all directions: `gamma`.
     pub fn doppler_factor(&self, offset_rest: DVec3) -> f64 {
         let LightCone { u, w, .. } = self.light_cone(offset_rest);
-        if u + w == 0.0 {
+        let twice_r = u + w;
+        if twice_r == 0.0 {
             return self.gamma;
         }
-        (self.stretch * w + self.squeeze * u) / (w + u)
+        // Ratios first: `squeeze * u` of a subnormal `u` is zero.
+        self.stretch * (w / twice_r) + self.squeeze * (u / twice_r)
     }
 
     /// The derivative of [`PhotosurfaceMap::seen_position`]: `I + n a^T`,
@@ -173,25 +175,13 @@ impl PhotosurfaceMap {
     /// The smaller of `u` and `w` comes from `u w = |across|^2`: as a difference it would be lost.
     fn light_cone(&self, offset: DVec3) -> LightCone {
         let n = self.direction;
-        // Outside this range the squares below would lose digits; powers of two lose none.
-        let largest = offset.abs().max_element();
-        let scale = if largest > 1e140 {
-            2f64.powi(-600)
-        } else if largest < 1e-140 {
-            2f64.powi(500)
-        } else {
-            1.0
-        };
-        let d = offset * scale;
-
-        let parallel = n.dot(d);
-        let sideways = n.cross(d);
-        let across = sideways.cross(n);
-        let across_squared = sideways.length_squared();
-        let r = parallel.hypot(across_squared.sqrt());
-        let larger = r + parallel.abs();
+        let parallel = n.dot(offset);
+        let sideways = n.cross(offset);
+        let distance_across = length(sideways);
+        let larger = parallel.hypot(distance_across) + parallel.abs();
         let smaller = if larger > 0.0 {
-            across_squared / larger
+            // Not the square: a place seen 1e152 ahead and 1 aside has a `u` of 1e-152.
+            distance_across * (distance_across / larger)
         } else {
             0.0
         };
@@ -201,11 +191,25 @@ impl PhotosurfaceMap {
             (larger, smaller)
         };
         LightCone {
-            across: across / scale,
-            u: u / scale,
-            w: w / scale,
+            across: sideways.cross(n),
+            u,
+            w,
         }
     }
+}
+
+/// The length of a vector, also where its square would overflow or lose digits.
+fn length(vector: DVec3) -> f64 {
+    let largest = vector.abs().max_element();
+    // Powers of two lose no digits.
+    let scale = if largest > 1e140 {
+        2f64.powi(-600)
+    } else if largest < 1e-140 {
+        2f64.powi(600)
+    } else {
+        1.0
+    };
+    (vector * scale).length() / scale
 }
 
 #[cfg(test)]
