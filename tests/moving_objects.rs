@@ -116,3 +116,45 @@ fn moving_objects_are_seen_where_their_worldlines_meet_the_light_cone() {
     dopplers.check();
     normals.check();
 }
+
+/// An observer who flies beside a fast object moves little in the object's rest frame, far in the scene:
+/// a worldline carried into the rest frame keeps the digits that events of the scene have not got.
+///
+/// The place is `tau gamma beta n` of the relative velocity. An error of `v` (see
+/// `composition_swings`) counts `2 cosh(eta / 2)` times in `gamma beta n`, one of the rotation once.
+#[test]
+fn an_observer_beside_a_fast_object_keeps_its_place() {
+    let mut carried = Worst::new("observer's place by a worldline in the rest frame");
+    let mut random = Random::new(8);
+    for rapidity in [3.0f64, 7.0, 15.0] {
+        for proper_time in [-2.5, 1000.0] {
+            let direction = random.direction();
+            let nearly = direction + random.direction() * (-rapidity).exp();
+            let object = Velocity::from_rapidity(rapidity, direction).expect("valid");
+            let observer = Velocity::from_rapidity(rapidity + 0.1, nearly).expect("valid");
+
+            // The flow of the observer's clock, through the scene into the rest frame.
+            let zero = || oracle::big(0.0);
+            let clock = [oracle::big(proper_time), zero(), zero(), zero()];
+            let in_scene = oracle::apply(&oracle::boost(&observer.reversed()), &clock);
+            let [_, x, y, z] = oracle::apply(&oracle::boost(&object), &in_scene);
+            let exact = [x, y, z];
+            let size = small(&oracle::length(&exact));
+
+            let relative = Lorentz::between(object, observer).boost_velocity();
+            let line = WorldLine {
+                origin: Event::default(),
+                velocity: relative,
+            };
+            let error = oracle::vector_error(line.at(proper_time).position, &exact);
+            let (swing, rotation_swing) = composition_swings(&object, &observer);
+            let half = 0.5 * relative.rapidity();
+            let limit = RELATIVE * (1.0 + relative.rapidity()) * size
+                + proper_time.abs() * TURN * 2.0 * half.cosh() * swing
+                + size * TURN * rotation_swing / half.cosh();
+            let case = || format!("{object:?}, {observer:?}, {proper_time}");
+            carried.record(error, limit, size, case);
+        }
+    }
+    carried.check();
+}
