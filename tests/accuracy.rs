@@ -234,6 +234,34 @@ fn normals_are_right_to_a_few_units_in_the_last_place() {
     anywhere.check();
 }
 
+/// Along an axis the rapidity makes no difference: as far as the digits of the oracle go.
+#[test]
+fn positions_and_times_are_as_good_at_extreme_rapidities() {
+    let mut worst = Worst::new("position and time, extreme rapidity");
+    let mut random = Random::new(9);
+    for rapidity in [30.0, 100.0, 200.0] {
+        let velocity = Velocity::from_rapidity(rapidity, DVec3::NEG_Z).expect("valid");
+        let map = PhotosurfaceMap::new(&velocity);
+        for exponent in -40..=0 {
+            // From straight ahead and behind to anywhere.
+            let aside = DVec3::new(1.0, -0.7, 0.0) * 10f64.powi(exponent);
+            for along in [-1.0, 1.0] {
+                let offset = aside + DVec3::Z * along * random.between(0.5, 2.0);
+                let sight = Oracle::observer_moves(&velocity).see(&big_vector(offset));
+                let size = small(sight.emission_time()).abs();
+                let position_error =
+                    oracle::vector_error(map.seen_position(offset), &sight.position());
+                let time_error = oracle::error(map.emission_time(offset), sight.emission_time());
+                let error = position_error.max(time_error);
+                worst.record(error, RELATIVE * size, size, || {
+                    format!("rapidity {rapidity}, offset {:?}", offset.to_array())
+                });
+            }
+        }
+    }
+    worst.check();
+}
+
 /// The oracle itself: an object that rushes at an observer at rest is the same physics as an observer
 /// who rushes at an object at rest, and its two calculations have no number in common.
 #[test]

@@ -74,8 +74,8 @@ impl PhotosurfaceMap {
     ///
     /// # Accuracy
     ///
-    /// Two units in the last place of `|result|` where the motion is along an axis, at any rapidity
-    /// up to 350. Else as good as a direction known to its last place allows: to
+    /// A few units in the last place of `|result|` where the motion is along an axis, at any rapidity
+    /// (measured to 200: two). Else as good as a direction known to its last place allows: to
     /// `4 epsilon r (1 + (gamma - 1) sin theta)` more, which counts only close behind the observer
     /// (`tests/accuracy.rs`). Continuous everywhere; the observer's own place maps to zero. For
     /// coordinates up to 1e150; beyond, a result may overflow.

@@ -11,8 +11,9 @@ use photosurface::{DVec3, Event, Velocity};
 /// A real number with [`PRECISION`] bits.
 pub(crate) type Big = FBig<HalfEven, 2>;
 
-/// Bits of every [`Big`]: 308 digits. The worst cancellation in the tests takes 130 of them
-/// (`exp(2 * 150)`, two observers in a row), the steps of the differences another 60.
+/// Bits of every [`Big`]: 308 digits. The worst cancellation in the tests takes 174 of them
+/// (`exp(2 * 200)`, straight behind the observer). Differences, whose steps take another 60, are not
+/// asked for there.
 const PRECISION: usize = 1024;
 
 /// A vector of three.
