@@ -15,6 +15,8 @@
 //! moves with it, the *observer's frame* with the observer; the axes of both are those of the scene under a
 //! pure boost.
 
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 mod io;
 mod light_cone;
 mod mesh;
@@ -25,9 +27,9 @@ mod spacetime;
 pub use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec4};
 
 pub use io::{
-    AccessorProblem, DocumentProblem, Export, LoadError, NodeProblem, Note, ObjProblem, ReadError,
-    Report, StageTime, UriProblem, WriteError, check_destination, load_models, read_gltf_bytes,
-    read_model, write_glb, write_gltf, write_ply, write_whole,
+    AccessorProblem, DocumentProblem, Export, FileNotes, LoadError, NodeProblem, Note, ObjProblem,
+    ReadError, Report, StageTime, UriProblem, WriteError, check_destination, load_models,
+    read_gltf_bytes, read_model, write_glb, write_gltf, write_ply, write_whole,
 };
 pub use light_cone::{PhotosurfaceMap, View};
 pub use mesh::{

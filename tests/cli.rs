@@ -503,7 +503,7 @@ fn check_says_what_an_export_would_make() {
     let run = workplace.run("check ball.json --steps 0,1,2").success();
     let (text, triangles) = (run.stdout_text(), 20 * 2 * 2);
     assert!(text.contains(&format!(" {triangles} ")), "{run}");
-    assert!(text.contains(&format!("3 steps: 3 photosurfaces")), "{run}");
+    assert!(text.contains("3 steps: 3 photosurfaces"), "{run}");
     assert!(
         text.contains(&format!(" {} triangles", 3 * triangles)),
         "{run}"

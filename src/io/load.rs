@@ -21,7 +21,7 @@ pub enum LoadError {
         /// Which file.
         path: PathBuf,
         /// What is wrong with it.
-        source: ReadError,
+        source: Box<ReadError>,
     },
     /// Its shape cannot be made.
     #[error("object \"{object}\"")]
@@ -33,16 +33,16 @@ pub enum LoadError {
     },
 }
 
+/// What there is to know about files that were read, each note with its file.
+pub type FileNotes = Vec<(PathBuf, Note)>;
+
 /// One model for each object of a scene, in their order, and what there is to know about the files; file
 /// names are relative to `directory`. A file that several objects use is read once.
 ///
 /// # Errors
 ///
 /// The first file that cannot be read, or shape that cannot be made.
-pub fn load_models(
-    scene: &Scene,
-    directory: &Path,
-) -> Result<(Vec<Model>, Vec<(PathBuf, Note)>), LoadError> {
+pub fn load_models(scene: &Scene, directory: &Path) -> Result<(Vec<Model>, FileNotes), LoadError> {
     let mut known: HashMap<PathBuf, Model> = HashMap::new();
     let mut notes = Vec::new();
     let mut models = Vec::with_capacity(scene.objects().len());
@@ -54,7 +54,7 @@ pub fn load_models(
                     let (model, found) = read_model(&path).map_err(|source| LoadError::File {
                         object: object.name.clone(),
                         path: path.clone(),
-                        source,
+                        source: Box::new(source),
                     })?;
                     notes.extend(found.into_iter().map(|note| (path.clone(), note)));
                     known.insert(path.clone(), model);

@@ -4,7 +4,7 @@ mod load;
 mod read;
 mod write;
 
-pub use load::{LoadError, load_models};
+pub use load::{FileNotes, LoadError, load_models};
 pub use read::{
     AccessorProblem, DocumentProblem, NodeProblem, Note, ObjProblem, ReadError, UriProblem,
     read_gltf_bytes, read_model,

@@ -51,12 +51,12 @@ impl View {
 
     /// Where the point `position_rest` is seen, in the observer's frame.
     pub fn seen_position(&self, position_rest: DVec3) -> DVec3 {
-        self.to_observer_axes(self.map.seen_position(self.offset(position_rest)))
+        self.turned(self.map.seen_position(self.offset(position_rest)))
     }
 
     /// The unit normal there of a surface with the normal `normal_rest` at rest.
     pub fn seen_normal(&self, position_rest: DVec3, normal_rest: DVec3) -> DVec3 {
-        self.to_observer_axes(
+        self.turned(
             self.map
                 .seen_normal(self.offset(position_rest), normal_rest),
         )
@@ -64,7 +64,7 @@ impl View {
 
     /// The unit tangent there of a surface with the tangent `tangent_rest` at rest.
     pub fn seen_tangent(&self, position_rest: DVec3, tangent_rest: DVec3) -> DVec3 {
-        self.to_observer_axes(
+        self.turned(
             self.map
                 .seen_tangent(self.offset(position_rest), tangent_rest),
         )
@@ -84,7 +84,7 @@ impl View {
         position_rest - self.observer_rest
     }
 
-    fn to_observer_axes(&self, vector: DVec3) -> DVec3 {
+    fn turned(&self, vector: DVec3) -> DVec3 {
         self.rest_to_observer.rotation() * vector
     }
 }

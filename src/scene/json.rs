@@ -48,11 +48,11 @@ impl Scene {
         let mut deserializer = serde_json::Deserializer::from_str(text);
         let scene = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
             let at = error.path().to_string();
-            scene_error(error.into_inner(), &at)
+            scene_error(text, &error.into_inner(), &at)
         })?;
         deserializer
             .end()
-            .map_err(|error| scene_error(error, "."))?;
+            .map_err(|error| scene_error(text, &error, "."))?;
         Ok(scene)
     }
 
@@ -62,19 +62,22 @@ impl Scene {
     }
 }
 
-fn scene_error(error: serde_json::Error, at: &str) -> SceneError {
-    let (line, column) = (error.line(), error.column());
+fn scene_error(json: &str, error: &serde_json::Error, at: &str) -> SceneError {
+    let (mut line, mut column) = (error.line(), error.column());
     // serde_json has no message without its position; here the position has fields of its own.
     let text = error.to_string();
     let suffix = format!(" at line {line} column {column}");
+    if line == 0 {
+        // What is wrong with the scene as a whole is found when all of it has been read.
+        let read = json.trim_end();
+        line = read.lines().count();
+        column = read.lines().last().map_or(0, str::len);
+    }
     SceneError {
         line,
         column,
-        at: if at == "." {
-            String::new()
-        } else {
-            at.to_owned()
-        },
+        // "." is the whole scene, "?" a place inside a value that was never begun.
+        at: at.trim_end_matches(['.', '?']).to_owned(),
         message: text.strip_suffix(&suffix).unwrap_or(&text).to_owned(),
     }
 }

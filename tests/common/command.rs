@@ -9,43 +9,43 @@ use std::process::{Command, Output, Stdio};
 use serde_json::Value;
 
 /// A directory of its own to run the binary in.
-pub struct Workplace {
+pub(crate) struct Workplace {
     directory: tempfile::TempDir,
 }
 
 /// What a run of the binary gave.
-pub struct Run {
+pub(crate) struct Run {
     command: String,
-    pub status: i32,
-    pub stdout: Vec<u8>,
-    pub stderr: String,
+    pub(crate) status: i32,
+    pub(crate) stdout: Vec<u8>,
+    pub(crate) stderr: String,
 }
 
 impl Workplace {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let directory = tempfile::tempdir().expect("a temporary directory can be made");
         Self { directory }
     }
 
-    pub fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.directory.path().join(name)
     }
 
-    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+    pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) {
         fs::write(self.path(name), content).expect("a temporary file can be written");
     }
 
-    pub fn read(&self, name: &str) -> Vec<u8> {
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
         fs::read(self.path(name))
             .unwrap_or_else(|error| panic!("{name}: {error}; there are {:?}", self.files()))
     }
 
-    pub fn read_json(&self, name: &str) -> Value {
+    pub(crate) fn read_json(&self, name: &str) -> Value {
         serde_json::from_slice(&self.read(name)).expect("JSON")
     }
 
     /// Names of all files, hidden ones too, in order.
-    pub fn files(&self) -> Vec<String> {
+    pub(crate) fn files(&self) -> Vec<String> {
         let entries = fs::read_dir(self.directory.path()).expect("the directory can be read");
         let name = |entry: std::io::Result<fs::DirEntry>| entry.expect("an entry").file_name();
         let mut names: Vec<_> = entries
@@ -56,12 +56,17 @@ impl Workplace {
     }
 
     /// Runs `photosurface` with these arguments, separated by spaces.
-    pub fn run(&self, arguments: &str) -> Run {
+    pub(crate) fn run(&self, arguments: &str) -> Run {
         self.run_with(arguments, b"", &[])
     }
 
     /// The same with something on stdin and in the environment.
-    pub fn run_with(&self, arguments: &str, stdin: &[u8], environment: &[(&str, &str)]) -> Run {
+    pub(crate) fn run_with(
+        &self,
+        arguments: &str,
+        stdin: &[u8],
+        environment: &[(&str, &str)],
+    ) -> Run {
         let binary = Path::new(env!("CARGO_BIN_EXE_photosurface"));
         let mut command = Command::new(binary);
         command
@@ -71,7 +76,7 @@ impl Workplace {
     }
 
     /// Runs a line of shell in which `photosurface` is the binary.
-    pub fn run_shell(&self, line: &str) -> Run {
+    pub(crate) fn run_shell(&self, line: &str) -> Run {
         let binary = Path::new(env!("CARGO_BIN_EXE_photosurface"));
         let directory = binary.parent().expect("a binary is in a directory");
         let path = std::env::var("PATH").expect("PATH");
@@ -108,14 +113,14 @@ impl Workplace {
 impl Run {
     /// It went well.
     #[track_caller]
-    pub fn success(self) -> Self {
+    pub(crate) fn success(self) -> Self {
         assert_eq!(self.status, 0, "{self}");
         self
     }
 
     /// It was an error with these words in its one message, and gave nothing else.
     #[track_caller]
-    pub fn error(self, words: &[&str]) -> Self {
+    pub(crate) fn error(self, words: &[&str]) -> Self {
         assert_eq!(self.status, 2, "{self}");
         assert!(self.stdout.is_empty(), "{self}");
         for word in words {
@@ -124,7 +129,7 @@ impl Run {
         self
     }
 
-    pub fn stdout_text(&self) -> &str {
+    pub(crate) fn stdout_text(&self) -> &str {
         std::str::from_utf8(&self.stdout).expect("text")
     }
 }
@@ -144,14 +149,14 @@ impl fmt::Display for Run {
 }
 
 /// The JSON of a GLB.
-pub fn glb_json(bytes: &[u8]) -> Value {
+pub(crate) fn glb_json(bytes: &[u8]) -> Value {
     assert_eq!(&bytes[..4], b"glTF");
     let length = u32::from_le_bytes(bytes[12..16].try_into().expect("four bytes")) as usize;
     serde_json::from_slice(&bytes[20..20 + length]).expect("JSON")
 }
 
 /// The names of all nodes of a GLB, in order.
-pub fn node_names(bytes: &[u8]) -> Vec<String> {
+pub(crate) fn node_names(bytes: &[u8]) -> Vec<String> {
     let json = glb_json(bytes);
     let nodes = json["nodes"].as_array().expect("nodes");
     nodes

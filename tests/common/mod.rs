@@ -6,6 +6,7 @@
     reason = "cargo test shows it on failure or with --nocapture"
 )]
 
+pub(crate) mod command;
 pub(crate) mod oracle;
 pub(crate) mod passing;
 
