@@ -99,7 +99,7 @@ fn every_flag_reaches_its_parameter() {
         (
             "--one-minus-beta 1e-30",
             "observer_rapidity",
-            &[34.885_349_686_183_09],
+            &[34.885_349_985_190_66],
         ),
         ("--gamma 5", "observer_gamma", &[5.0]),
         ("--rapidity 40", "observer_rapidity", &[40.0]),
