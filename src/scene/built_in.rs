@@ -20,7 +20,7 @@ pub const BUILT_IN_SCENES: &[BuiltInScene] = &[
     },
     BuiltInScene {
         name: "cube",
-        summary: "a cube flies by at 0.9 c, seven steps (Rau et al. 1998, Fig. 4)",
+        summary: "a cube flies by at 0.9 c, six steps (Rau et al. 1998, Fig. 4)",
         json: include_str!("../../examples/scenes/cube.json"),
     },
     BuiltInScene {
