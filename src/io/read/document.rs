@@ -3,7 +3,8 @@
 //! The `gltf` crate gives the types of the JSON and checks its references. What it is not used for, and why:
 //! its validation panics where a POSITION accessor is out of range and refuses files for want of
 //! bounds that nobody here reads; its types hold node transforms as `f32`; it refuses required
-//! extensions without regard to what they mean.
+//! extensions without regard to what they mean; it refuses accessors without a buffer view, animations
+//! by extensions, and scenes without nodes.
 
 use std::path::Path;
 
@@ -21,6 +22,8 @@ pub(super) struct Document {
     pub(super) root: Root,
     /// As many as there are nodes.
     pub(super) placements: Vec<Placement>,
+    /// How many animations were left out.
+    pub(super) animations: usize,
     /// `None` where a buffer has neither a URI nor the binary chunk.
     pub(super) buffers: Vec<Option<Vec<u8>>>,
 }
@@ -46,6 +49,7 @@ pub(super) fn read_document(
     let mut value: Value = serde_json::from_slice(&json).map_err(ReadError::Json)?;
     check_version(&value)?;
     mend(&mut value);
+    let animations = drop_animations(&mut value);
     let placements = match value.get("nodes") {
         Some(nodes) => schema::<Vec<Placement>>("nodes", nodes)?,
         None => vec![],
@@ -71,6 +75,7 @@ pub(super) fn read_document(
     Ok(Document {
         root,
         placements,
+        animations,
         buffers,
     })
 }
@@ -130,20 +135,26 @@ fn mend(value: &mut Value) {
     for mesh in items(value.get_mut("meshes")) {
         for primitive in items(mesh.get_mut("primitives")) {
             if let Some(Value::Object(attributes)) = primitive.get_mut("attributes") {
-                let unknown = |name: &String| !is_semantic(name);
-                for name in attributes
-                    .keys()
-                    .cloned()
-                    .filter(unknown)
-                    .collect::<Vec<_>>()
-                {
-                    if let Some(accessor) = attributes.remove(&name) {
-                        attributes.insert(format!("_{name}"), accessor);
-                    }
-                }
+                let named = std::mem::take(attributes).into_iter();
+                attributes.extend(named.map(|(name, accessor)| match is_semantic(&name) {
+                    true => (name, accessor),
+                    false => (format!("_{name}"), accessor),
+                }));
             }
         }
     }
+}
+
+/// Takes out the animations, which are not read: those of `KHR_animation_pointer` have targets that the
+/// crate refuses. Says how many there were.
+fn drop_animations(value: &mut Value) -> usize {
+    let animations = value
+        .as_object_mut()
+        .and_then(|root| root.remove("animations"));
+    animations
+        .as_ref()
+        .and_then(Value::as_array)
+        .map_or(0, Vec::len)
 }
 
 fn items(value: Option<&mut Value>) -> impl Iterator<Item = &mut Value> {
@@ -200,7 +211,14 @@ fn give_bounds(root: &mut Root) -> Result<(), ReadError> {
 fn check_references(root: &Root) -> Result<(), ReadError> {
     let mut first = None;
     root.validate(root, gltf::json::Path::new, &mut |path, error| {
-        first.get_or_insert_with(|| (path(), error));
+        let path = path();
+        // An accessor may do without a view: it is all zeros then (glTF 2.0, section 5.1.1).
+        let all_zeros = path.as_str().starts_with("accessors[")
+            && path.as_str().ends_with("].bufferView")
+            && error == Invalid::Missing;
+        if !all_zeros {
+            first.get_or_insert((path, error));
+        }
     });
     let Some((path, error)) = first else {
         return Ok(());

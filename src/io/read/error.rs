@@ -98,12 +98,12 @@ pub enum ReadError {
         problem: NodeProblem,
     },
     /// Geometry that makes no mesh.
-    #[error("{place}: {source}")]
+    #[error("{place}: {problem}")]
     Mesh {
         /// Which geometry.
         place: String,
         /// What is wrong with it.
-        source: MeshError,
+        problem: MeshError,
     },
     /// A line of an OBJ file.
     #[error("line {line}: {problem}")]
@@ -218,6 +218,9 @@ pub enum AccessorProblem {
         /// How many are read.
         limit: usize,
     },
+    /// Positions that the file does not give.
+    #[error("has neither a bufferView nor sparse values: all positions would be zero")]
+    AllZeros,
     /// The index that glTF reserves.
     #[error("index {position} is {index}, which glTF reserves for primitive restart")]
     Restart {

@@ -38,7 +38,7 @@ pub fn read_gltf_bytes(bytes: &[u8], folder: &Path) -> Result<(Model, Vec<Note>)
     let mut notes = vec![];
     let document = read_document(bytes, folder, &mut notes)?;
     let tree = read_tree(&document, &mut notes)?;
-    note_other_content(&document.root, &mut notes);
+    note_other_content(&document, &mut notes);
     let mut materials = Materials::new(&document, folder);
     let mut parts = vec![];
     for &node in &tree.drawn {
@@ -48,9 +48,9 @@ pub fn read_gltf_bytes(bytes: &[u8], folder: &Path) -> Result<(Model, Vec<Note>)
         let names = tell_apart(&node_name(&document.root, node), &made_of);
         for (piece, name) in pieces.into_iter().zip(names) {
             let part = Part::new(name, piece.mesh, piece.material);
-            parts.push(part.map_err(|source| ReadError::Mesh {
+            parts.push(part.map_err(|problem| ReadError::Mesh {
                 place: piece.place,
-                source,
+                problem,
             })?);
         }
     }
@@ -62,7 +62,8 @@ pub fn read_gltf_bytes(bytes: &[u8], folder: &Path) -> Result<(Model, Vec<Note>)
 }
 
 /// Notes what a file has that is no surface.
-fn note_other_content(root: &Root, notes: &mut Vec<Note>) {
+fn note_other_content(document: &Document, notes: &mut Vec<Note>) {
+    let root = &document.root;
     let lights = root
         .extensions
         .as_ref()
@@ -72,7 +73,7 @@ fn note_other_content(root: &Root, notes: &mut Vec<Note>) {
     let counts = [
         (root.cameras.len(), "camera"),
         (lights, "light"),
-        (root.animations.len(), "animation"),
+        (document.animations, "animation"),
     ];
     for (count, singular) in counts {
         if count > 0 {

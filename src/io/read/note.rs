@@ -43,10 +43,13 @@ pub enum Note {
         /// How many primitives, or lines of the file.
         count: usize,
     },
-    /// A primitive or a face without a triangle.
+    /// A primitive without a triangle.
     Empty {
         /// Which one.
         place: String,
+    },
+    /// Faces without a triangle.
+    EmptyFaces {
         /// How many.
         count: usize,
     },
@@ -150,9 +153,10 @@ impl fmt::Display for Note {
                 let those = plural(*count, "primitive");
                 write!(f, "{place}: {those} of points or lines skipped")
             }
-            Self::Empty { place, count } => {
-                let those = plural(*count, "part");
-                write!(f, "{place}: {those} without triangles skipped")
+            Self::Empty { place } => write!(f, "{place}: has no triangles, skipped"),
+            Self::EmptyFaces { count } => {
+                let those = plural(*count, "face");
+                write!(f, "{those} of fewer than three corners skipped")
             }
             Self::LeftOver { place, count } => {
                 let those = plural(*count, "left-over index");
@@ -169,6 +173,10 @@ impl fmt::Display for Note {
                 write!(f, "{mesh}: {those} outside 0 to 1 clamped")
             }
             Self::ColorsFromSrgb => write!(f, "vertex colours: taken as sRGB, made linear"),
+            Self::Morph { mesh, weights } if weights.iter().all(|&weight| weight == 0.0) => {
+                let targets = plural(weights.len(), "morph target");
+                write!(f, "{mesh}: {targets} left at weight 0")
+            }
             Self::Morph { mesh, weights } => {
                 write!(f, "{mesh}: morph targets applied with weights {weights:?}")
             }

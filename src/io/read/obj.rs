@@ -52,9 +52,9 @@ pub(super) fn read_obj_bytes(
     for (model, name) in models.iter().zip(names) {
         let mesh = make_mesh(&model.mesh, &prepared, &name, &mut notes);
         let part = mesh.and_then(|mesh| Part::new(name.clone(), mesh, material_of(model)));
-        parts.push(part.map_err(|source| ReadError::Mesh {
+        parts.push(part.map_err(|problem| ReadError::Mesh {
             place: format!("part {name:?}"),
-            source,
+            problem,
         })?);
     }
     if parts.is_empty() {
@@ -66,16 +66,14 @@ pub(super) fn read_obj_bytes(
 }
 
 fn note_other_content(prepared: &Prepared, notes: &mut Vec<Note>) {
-    let place = || "the file".to_owned();
     let count = prepared.points_and_lines;
     if count > 0 {
-        let place = place();
+        let place = "the file".to_owned();
         add_note(notes, Note::PointsAndLines { place, count });
     }
     let count = prepared.empty_faces;
     if count > 0 {
-        let place = place();
-        add_note(notes, Note::Empty { place, count });
+        add_note(notes, Note::EmptyFaces { count });
     }
     if prepared.curves > 0 {
         let what = plural(prepared.curves, "free-form curve or surface");

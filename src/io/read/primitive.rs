@@ -84,7 +84,7 @@ pub(super) fn read_primitive(
     };
     if triangles.is_empty() {
         let place = source.place.clone();
-        add_note(notes, Note::Empty { place, count: 1 });
+        add_note(notes, Note::Empty { place });
         return Ok(None);
     }
     let mut shape = source.shape()?;
@@ -93,9 +93,9 @@ pub(super) fn read_primitive(
         triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
     }
     let vertices = shape.positions.len();
-    let wrong = |error| ReadError::Mesh {
+    let wrong = |problem| ReadError::Mesh {
         place: source.place.clone(),
-        source: error,
+        problem,
     };
     let mut mesh = Mesh::new(shape.positions, triangles).map_err(wrong)?;
     if let Some(normals) = shape.normals {
@@ -181,6 +181,14 @@ impl Source<'_> {
     fn shape(&self) -> Result<Shape, ReadError> {
         let mut positions = vec![];
         if let Some(index) = self.attribute(&Semantic::Positions) {
+            let accessor = &self.document.root.accessors[index.value()];
+            if accessor.buffer_view.is_none() && accessor.sparse.is_none() {
+                return Err(ReadError::Accessor {
+                    place: format!("{}, POSITION", self.place),
+                    accessor: index.value(),
+                    problem: AccessorProblem::AllZeros,
+                });
+            }
             positions = self.vectors(index, "POSITION", self.document.count(index))?;
         }
         let normals = self
@@ -280,19 +288,20 @@ impl Source<'_> {
 /// Triangles, strips and fans as triangles of their own. In a strip two equal indices only lead on to
 /// the next piece of it, and the triangles that they make are left out.
 fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
-    let windows = indices.windows(3).enumerate();
+    let windows = indices.windows(3);
     let is_open = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
     match mode {
         Mode::Triangles => indices.as_chunks().0.to_vec(),
         Mode::TriangleStrip => windows
-            .map(|(i, w)| match i % 2 {
-                0 => [w[0], w[1], w[2]],
-                _ => [w[0], w[2], w[1]],
+            .zip([false, true].into_iter().cycle())
+            .map(|(w, is_odd)| match is_odd {
+                false => [w[0], w[1], w[2]],
+                true => [w[0], w[2], w[1]],
             })
             .filter(is_open)
             .collect(),
         Mode::TriangleFan => windows
-            .map(|(_, w)| [w[1], w[2], indices[0]])
+            .map(|w| [w[1], w[2], indices[0]])
             .filter(is_open)
             .collect(),
         Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => vec![],
