@@ -357,6 +357,13 @@ fn what_cannot_be_read_is_refused_by_name_and_place() {
                 "{place}, POSITION, accessors[0]: ends at byte 60 of bufferViews[0], which has 48"
             ),
         ),
+        // Before anything is made room for.
+        (
+            "huge_count.glb",
+            format!(
+                "{place}, POSITION, accessors[0]: ends at byte 51539607540 of bufferViews[0], which has 48"
+            ),
+        ),
         (
             "count_mismatch.glb",
             format!("{place}, NORMAL, accessors[0]: has 3 elements, expected 4"),

@@ -73,6 +73,16 @@ fn attribute(
             problem: DocumentProblem::OutOfRange,
         });
     };
+    // Zeros without end would be copies without end.
+    if document.root.accessors[index as usize]
+        .buffer_view
+        .is_none()
+    {
+        return Err(ReadError::Document {
+            place: format!("accessors[{index}].bufferView"),
+            problem: DocumentProblem::Missing,
+        });
+    }
     let numbers = document.numbers(Index::new(index as u32), expected, place)?;
     let found = numbers.elements().len();
     match *count.get_or_insert(found) {

@@ -74,20 +74,14 @@ pub(super) fn read_primitive(
     deform: impl FnOnce(&mut Shape) -> Result<(), ReadError>,
     notes: &mut Vec<Note>,
 ) -> Result<Option<Mesh>, ReadError> {
-    let positions = source
-        .attribute(&Semantic::Positions)
-        .map_or(0, |index| source.document.count(index));
-    let mut triangles = if positions > 0 {
-        source.triangles(positions, notes)?
-    } else {
-        vec![]
-    };
+    // In this order, because a count is only proven by the bytes behind it.
+    let mut shape = source.shape()?;
+    let mut triangles = source.triangles(shape.positions.len(), notes)?;
     if triangles.is_empty() {
         let place = source.place.clone();
         add_note(notes, Note::Empty { place });
         return Ok(None);
     }
-    let mut shape = source.shape()?;
     deform(&mut shape)?;
     if shape.mirrored {
         triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
@@ -213,6 +207,9 @@ impl Source<'_> {
         vertices: usize,
         notes: &mut Vec<Note>,
     ) -> Result<Vec<[u32; 3]>, ReadError> {
+        if vertices == 0 {
+            return Ok(vec![]);
+        }
         let indices: Vec<u32> = match self.primitive.indices {
             Some(index) => self.indices(index)?,
             None => (0..u32::try_from(vertices).unwrap_or(u32::MAX)).collect(),
