@@ -4,7 +4,7 @@ mod common;
 
 use common::oracle::{self, Oracle, big_vector, small};
 use common::{RELATIVE, Random, TURN, Worst, composition_swings, normal_limit};
-use photosurface::{DVec3, Event, Lorentz, PhotosurfaceMap, Velocity, WorldLine};
+use photosurface::{DVec3, Event, Velocity, View, WorldLine};
 
 /// Two objects and an observer, all in motion in different directions, at several moments of the
 /// observer's clock: what the library makes of it in the objects' rest frames against the worldlines
@@ -45,16 +45,20 @@ fn moving_objects_are_seen_where_their_worldlines_meet_the_light_cone() {
         for (object_position, object_velocity) in objects {
             for proper_time in [-3.0, 0.0, 2.5] {
                 let event = flight.at(proper_time);
-                let to_rest = Lorentz::boost(object_velocity);
-                let rest_to_observer = Lorentz::between(object_velocity, observer_velocity);
                 let from_origin = event - Event::new(0.0, object_position);
-                let observer_rest = to_rest.apply(from_origin).position;
-                let map = PhotosurfaceMap::new(&rest_to_observer.boost_velocity());
-                let rotation = rest_to_observer.rotation();
+                let object = WorldLine {
+                    origin: Event::new(0.0, object_position),
+                    velocity: object_velocity,
+                };
+                let observer = WorldLine {
+                    origin: event,
+                    velocity: observer_velocity,
+                };
+                let view = View::new(&observer, &object, 0.0);
                 let oracle =
                     Oracle::new(object_position, &object_velocity, event, &observer_velocity);
 
-                let relative = rest_to_observer.boost_velocity();
+                let relative = view.relative_velocity();
                 let (swing, rotation_swing) =
                     composition_swings(&object_velocity, &observer_velocity);
                 let half = 0.5 * relative.rapidity();
@@ -69,7 +73,7 @@ fn moving_objects_are_seen_where_their_worldlines_meet_the_light_cone() {
                 for _ in 0..10 {
                     let vertex = random.direction() * random.between(0.1, 2.0);
                     let normal_rest = random.direction();
-                    let offset = vertex - observer_rest;
+                    let offset = vertex - view.observer_rest();
                     let case = || {
                         format!(
                             "object {object_velocity:?} at {object_position}, vertex {vertex}, \
@@ -79,14 +83,14 @@ fn moving_objects_are_seen_where_their_worldlines_meet_the_light_cone() {
 
                     let seen = oracle.see(&big_vector(vertex)).position();
                     let size = small(&oracle::length(&seen));
-                    let (r, doppler) = (offset.length(), map.doppler_factor(offset));
+                    let (r, doppler) = (offset.length(), view.doppler_factor(vertex));
                     let sine = relative.direction().cross(offset).length() / r;
                     let gamma_beta = relative.gamma_beta();
                     let angle_error = direction_error + TURN + place_error / r;
                     let limit = (RELATIVE + turned + rapidity_error + direction_error) * size
                         + angle_error * r * (1.0 + relative.gamma() * sine)
                         + place_error * doppler;
-                    let error = oracle::vector_error(rotation * map.seen_position(offset), &seen);
+                    let error = oracle::vector_error(view.seen_position(vertex), &seen);
                     positions.record(error, limit, size, case);
 
                     let exact = oracle.doppler_factor(&big_vector(vertex));
@@ -105,7 +109,7 @@ fn moving_objects_are_seen_where_their_worldlines_meet_the_light_cone() {
                             angle_error,
                         );
                     let exact = oracle.normal(&big_vector(vertex), normal_rest);
-                    let normal = rotation * map.seen_normal(offset, normal_rest);
+                    let normal = view.seen_normal(vertex, normal_rest);
                     let error = oracle::vector_error(normal, &exact);
                     normals.record(error, limit, 1.0, case);
                 }
@@ -118,7 +122,8 @@ fn moving_objects_are_seen_where_their_worldlines_meet_the_light_cone() {
 }
 
 /// An observer who flies beside a fast object moves little in the object's rest frame, far in the scene:
-/// a worldline carried into the rest frame keeps the digits that events of the scene have not got.
+/// a view, which carries the worldline into the rest frame, keeps the digits that events of the scene
+/// have not got.
 ///
 /// The place is `tau gamma beta n` of the relative velocity. An error of `v` (see
 /// `composition_swings`) counts `2 cosh(eta / 2)` times in `gamma beta n`, one of the rotation once.
@@ -141,12 +146,13 @@ fn an_observer_beside_a_fast_object_keeps_its_place() {
             let exact = [x, y, z];
             let size = small(&oracle::length(&exact));
 
-            let relative = Lorentz::between(object, observer).boost_velocity();
-            let line = WorldLine {
+            let from_origin = |velocity| WorldLine {
                 origin: Event::default(),
-                velocity: relative,
+                velocity,
             };
-            let error = oracle::vector_error(line.at(proper_time).position, &exact);
+            let view = View::new(&from_origin(observer), &from_origin(object), proper_time);
+            let relative = view.relative_velocity();
+            let error = oracle::vector_error(view.observer_rest(), &exact);
             let (swing, rotation_swing) = composition_swings(&object, &observer);
             let half = 0.5 * relative.rapidity();
             let limit = RELATIVE * (1.0 + relative.rapidity()) * size

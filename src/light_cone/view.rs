@@ -30,10 +30,12 @@ impl View {
     pub fn new(observer: &WorldLine, object: &WorldLine, proper_time: f64) -> Self {
         let rest_to_observer = Lorentz::between(object.velocity, observer.velocity);
         let relative = rest_to_observer.boost_velocity();
-        let at_origin = Lorentz::boost(object.velocity).apply(observer.origin - object.origin);
+        let observer_in_rest_frame = WorldLine {
+            origin: Lorentz::boost(object.velocity).apply(observer.origin - object.origin),
+            velocity: relative,
+        };
         Self {
-            observer_rest: at_origin.position
-                + relative.direction() * (relative.gamma_beta() * proper_time),
+            observer_rest: observer_in_rest_frame.at(proper_time).position,
             rest_to_observer,
             map: PhotosurfaceMap::new(&relative),
         }

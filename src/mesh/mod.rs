@@ -287,7 +287,7 @@ fn unit_or_zero(vector: DVec3) -> DVec3 {
     unit(vector).unwrap_or(DVec3::ZERO)
 }
 
-fn check<T: std::fmt::Debug>(
+fn check<T: std::fmt::Display>(
     attribute: &'static str,
     values: &[T],
     vertices: usize,
@@ -304,7 +304,7 @@ fn check<T: std::fmt::Debug>(
         Some(vertex) => Err(MeshError::NotFinite {
             attribute,
             vertex,
-            value: format!("{:?}", values[vertex]),
+            value: values[vertex].to_string(),
         }),
         None => Ok(()),
     }
