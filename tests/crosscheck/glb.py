@@ -1,0 +1,87 @@
+"""A reader of just the glTF that the program writes: the JSON as it is, accessors as numpy arrays.
+
+Other readers add a node's translation to its vertices in f32; this one keeps the two apart.
+"""
+
+import json
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy
+
+TYPES = {5121: "u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+
+
+@dataclass
+class Node:
+    """A node of the scene with its mesh's only primitive."""
+
+    name: str
+    json: dict
+    mesh: dict
+    translation: numpy.ndarray  # f64, as in the JSON
+    attributes: dict  # name to array, as in the binary part
+    triangles: numpy.ndarray
+
+    @property
+    def extras(self):
+        return self.json["extras"]
+
+    @property
+    def positions(self):
+        """The local positions, f32."""
+        return self.attributes["POSITION"]
+
+    @property
+    def world(self):
+        """The positions in the observer's frame, f64."""
+        return self.translation + self.positions.astype(numpy.float64)
+
+
+class Gltf:
+    def __init__(self, path):
+        path = Path(path)
+        data = path.read_bytes()
+        if path.suffix == ".glb":
+            self.json, self._buffer = _split(data)
+        else:
+            self.json = json.loads(data)
+            (buffer,) = self.json["buffers"]
+            self._buffer = (path.parent / buffer["uri"]).read_bytes()
+        self.nodes = [self._node(node) for node in self.json["nodes"]]
+
+    def accessor(self, index):
+        spec = self.json["accessors"][index]
+        view = self.json["bufferViews"][spec["bufferView"]]
+        element = numpy.dtype((TYPES[spec["componentType"]], (WIDTHS[spec["type"]],)))
+        assert view.get("byteStride", element.itemsize) == element.itemsize, "interleaved"
+        start = view.get("byteOffset", 0) + spec.get("byteOffset", 0)
+        array = numpy.frombuffer(self._buffer, element, spec["count"], start)
+        return array[:, 0] if spec["type"] == "SCALAR" else array
+
+    def _node(self, node):
+        mesh = self.json["meshes"][node["mesh"]]
+        (primitive,) = mesh["primitives"]
+        return Node(
+            name=node["name"],
+            json=node,
+            mesh=mesh,
+            translation=numpy.array(node.get("translation", [0, 0, 0]), dtype=numpy.float64),
+            attributes={n: self.accessor(i) for n, i in primitive["attributes"].items()},
+            triangles=self.accessor(primitive["indices"]).reshape(-1, 3),
+        )
+
+
+def _split(data):
+    """The JSON and the binary chunk of a GLB file."""
+    magic, version, length = struct.unpack_from("<4sII", data)
+    assert (magic, version, length) == (b"glTF", 2, len(data))
+    chunks = {}
+    at = 12
+    while at < length:
+        size, kind = struct.unpack_from("<I4s", data, at)
+        chunks[kind] = data[at + 8 : at + 8 + size]
+        at += 8 + size
+    return json.loads(chunks[b"JSON"]), chunks[b"BIN\0"]
