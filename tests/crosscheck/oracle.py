@@ -6,7 +6,6 @@ the observer's frame. Boosts are the 4x4 matrices of any textbook. The Doppler f
 proper times, the normal the cross product of two tangents, both by differencing. No formula of the crate
 is used. c = 1; events are lists [t, x, y, z]; the metric is (-, +, +, +).
 
-`known-answer` tests are in test_oracle.py.
 """
 
 from dataclasses import dataclass

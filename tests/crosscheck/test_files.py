@@ -1,0 +1,91 @@
+"""What the files promise beyond what readers check: exact bounds, plain structure, the same bytes."""
+
+import numpy
+import pytest
+
+import glb
+from oracle import Observer, Source, View
+from scenes import CUBE, SEVERAL, SPHERE, TORUS, write_obj
+
+SCENES = {"sphere": SPHERE, "cube": CUBE, "torus": TORUS, "several": SEVERAL}
+
+
+@pytest.fixture(params=[*SCENES, "obj"])
+def scene(request, tmp_path):
+    if request.param == "obj":
+        return {"objects": [{"name": "roof", "file": str(write_obj(tmp_path))}]}
+    return SCENES[request.param]
+
+
+def test_bounds_are_exact(scene, export):
+    document = glb.Gltf(export(scene))
+    for node in document.nodes:
+        (primitive,) = node.mesh["primitives"]
+        spec = document.json["accessors"][primitive["attributes"]["POSITION"]]
+        assert spec["min"] == node.positions.min(axis=0).tolist()
+        assert spec["max"] == node.positions.max(axis=0).tolist()
+
+
+def test_the_structure_is_plain(scene, export):
+    """One scene of flat nodes that only translate, core glTF, names that every program keeps."""
+    json = glb.Gltf(export(scene)).json
+    assert json["asset"]["version"] == "2.0"
+    assert "extensionsUsed" not in json
+    assert len(json["scenes"]) == 1
+    assert json["scenes"][0]["nodes"] == list(range(len(json["nodes"])))
+    names = [node["name"] for node in json["nodes"]]
+    assert len(set(names)) == len(names)
+    for node in json["nodes"]:
+        assert node["name"].isascii()
+        assert node["name"] == json["meshes"][node["mesh"]]["name"]
+        assert node.keys() <= {"name", "mesh", "translation", "extras"}
+    for mesh in json["meshes"]:
+        (primitive,) = mesh["primitives"]
+        assert primitive.get("mode", 4) == 4  # triangles
+        assert json["accessors"][primitive["indices"]]["componentType"] == 5125  # u32
+
+
+def test_normals_are_unit(scene, export):
+    for node in glb.Gltf(export(scene)).nodes:
+        length = numpy.linalg.norm(node.attributes["NORMAL"].astype(float), axis=1)
+        assert abs(length - 1).max() <= 2**-24 * 1.001  # each component is rounded by 2^-24 of itself
+
+
+def test_numbers_are_finite(scene, export):
+    for node in glb.Gltf(export(scene)).nodes:
+        for name, values in node.attributes.items():
+            assert numpy.isfinite(values).all(), f"{node.name} {name}"
+
+
+def test_local_positions_stay_near_the_translation(scene, export):
+    """The translation is there so that f32 has little to hold: the part is around it."""
+    for node in glb.Gltf(export(scene)).nodes:
+        assert (node.positions.min(axis=0) <= 0).all()
+        assert (node.positions.max(axis=0) >= 0).all()
+
+
+def test_the_same_bytes_every_time(scene, export):
+    first = export(scene)
+    second = export(scene, "-v")  # a run of its own: exports are remembered by their flags
+    assert first != second
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_stdout_holds_the_same_file(export, photosurface):
+    path = export(CUBE)
+    scene = path.parent / "scene.json"
+    assert photosurface("export", scene, "-o", "-") == path.read_bytes()
+    assert photosurface("export", "-", "-o", "-", stdin=scene.read_bytes()) == path.read_bytes()
+
+
+def test_facts_about_each_step(export):
+    """Step, proper time and relative gamma as the oracle knows them."""
+    for node in glb.Gltf(export(SEVERAL)).nodes:
+        if node.name == "observer":
+            continue
+        facts = node.extras
+        (spec,) = [spec for spec in SEVERAL["objects"] if spec["name"] == facts["object"]]
+        assert facts["proper_time"] == SEVERAL["steps"][facts["step"]]
+        gamma = View(Observer.of_scene(SEVERAL), Source.of_object(spec)).relative_gamma()
+        # Two speeds given to half an ulp, a composition and a cosh.
+        assert abs(facts["relative_gamma"] / gamma - 1) < 2**-49
