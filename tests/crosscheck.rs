@@ -26,18 +26,16 @@ fn programs_nobody_here_wrote_agree() {
 
     let results = home.join("results.xml");
     let _ = fs::remove_file(&results); // absent on the first run
-    let output = run(
-        Command::new(python)
-            .args(["-m", "pytest", "-ra", "--durations=10", "--color=no"])
-            .args(["-p", "no:cacheprovider"])
-            .arg("--junit-xml")
-            .arg(&results)
-            .arg(questions())
-            .current_dir(questions())
-            .env("PHOTOSURFACE_BINARY", env!("CARGO_BIN_EXE_photosurface"))
-            .env("NODE_PATH", node_modules)
-            .env("PYTHONDONTWRITEBYTECODE", "1"),
-    );
+    let output = run(Command::new(python)
+        .args(["-m", "pytest", "-ra", "--durations=10", "--color=no"])
+        .args(["-p", "no:cacheprovider"])
+        .arg("--junit-xml")
+        .arg(&results)
+        .arg(questions())
+        .current_dir(questions())
+        .env("PHOTOSURFACE_BINARY", env!("CARGO_BIN_EXE_photosurface"))
+        .env("NODE_PATH", node_modules)
+        .env("PYTHONDONTWRITEBYTECODE", "1"));
     let transcript = transcript(&output);
     assert!(
         output.status.success(),
@@ -63,9 +61,7 @@ fn virtual_environment(home: &Path) -> PathBuf {
     install_once(&home.join("venv.installed"), &pins, || {
         remove_directory(&directory);
         must_succeed(
-            Command::new(python)
-                .args(["-m", "venv"])
-                .arg(&directory),
+            Command::new(python).args(["-m", "venv"]).arg(&directory),
             "It needs Python's venv and ensurepip; on Debian and Ubuntu: apt-get install python3-venv.",
         );
         must_succeed(

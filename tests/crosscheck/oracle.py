@@ -5,7 +5,6 @@ observer's backward light cone is found there from a quadratic equation, and tha
 the observer's frame. Boosts are the 4x4 matrices of any textbook. The Doppler factor is the ratio of two
 proper times, the normal the cross product of two tangents, both by differencing. No formula of the crate
 is used. c = 1; events are lists [t, x, y, z]; the metric is (-, +, +, +).
-
 """
 
 from dataclasses import dataclass

@@ -48,8 +48,8 @@ def test_one_file_per_step(export):
 
 
 @pytest.mark.parametrize("name", ["sphere", "cube", "lattice", "street", "snapshot"])
-def test_built_in_scenes(name, export):
-    assert_valid(export(Path(name)))
+def test_built_in_scenes(name, export, photosurface):
+    assert_valid(export(json.loads(photosurface("example", name))))
 
 
 @pytest.mark.parametrize("shape", ["cylinder", "cone", "torus", "rod", "grid", "lattice", "box", "sphere"])
