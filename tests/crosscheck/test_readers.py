@@ -65,7 +65,7 @@ def test_trimesh_reads_the_extras(exported):
         assert scene.metadata[key] == value, key
     for node in document.nodes:
         edge = scene.graph.transforms.edge_data[(scene.graph.transforms.parents[node.name], node.name)]
-        assert edge["metadata"] == node.extras
+        assert edge.get("metadata", {}) == node.json.get("extras", {})
 
 
 def test_pyvista_finds_as_much(exported):
