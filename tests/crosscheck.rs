@@ -6,6 +6,7 @@
 //! and runs them. Nothing is installed anywhere else, and nothing at all while the pins stay the same.
 
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -35,7 +36,8 @@ fn programs_nobody_here_wrote_agree() {
         .current_dir(questions())
         .env("PHOTOSURFACE_BINARY", env!("CARGO_BIN_EXE_photosurface"))
         .env("NODE_PATH", node_modules)
-        .env("PYTHONDONTWRITEBYTECODE", "1"));
+        .env("PYTHONDONTWRITEBYTECODE", "1"))
+    .expect("the interpreter is there: it installed the packages");
     let transcript = transcript(&output);
     assert!(
         output.status.success(),
@@ -124,24 +126,22 @@ fn remove_directory(directory: &Path) {
 }
 
 fn must_succeed(command: &mut Command, needs: &str) {
-    let output = run(command);
-    assert!(
-        output.status.success(),
-        "the cross-check could not be installed: {command:?} failed. {needs}\n{}",
-        transcript(&output)
-    );
+    let failure = match run(command) {
+        Ok(output) if output.status.success() => return,
+        Ok(output) => transcript(&output),
+        Err(error) => error.to_string(),
+    };
+    panic!("the cross-check could not be installed: {command:?} failed. {needs}\n{failure}");
 }
 
 /// Runs a command without what in the caller's environment would change the meaning of a test.
-fn run(command: &mut Command) -> Output {
+fn run(command: &mut Command) -> io::Result<Output> {
     command
         .env_remove("PYTHONPATH")
         .env_remove("PYTHONHOME")
         .env_remove("PYTEST_ADDOPTS")
-        .env_remove("PYTEST_PLUGINS");
-    command
+        .env_remove("PYTEST_PLUGINS")
         .output()
-        .unwrap_or_else(|error| panic!("the cross-check cannot run {command:?}: {error}"))
 }
 
 fn transcript(output: &Output) -> String {

@@ -10,7 +10,7 @@ SPHERE = {
     "objects": [
         {
             "name": "sphere",
-            "shape": {"sphere": {"radius": 1, "resolution": 32}},
+            "shape": {"sphere": {"radius": 1, "resolution": 48}},
             "position": [0, 3, 0],
         }
     ],

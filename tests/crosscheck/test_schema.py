@@ -29,7 +29,9 @@ def test_the_list_of_built_in_scenes(photosurface):
         assert name in listed
 
 
-@pytest.mark.parametrize("scene", [SPHERE, CUBE, TORUS, SEVERAL], ids=["sphere", "cube", "torus", "several"])
+@pytest.mark.parametrize(
+    "scene", [SPHERE, CUBE, TORUS, SEVERAL], ids=["sphere", "cube", "torus", "several"]
+)
 def test_scenes_that_the_program_takes_fit_the_schema(scene, validator):
     validator.validate(scene)
 

@@ -74,7 +74,8 @@ def test_the_volume_of_a_polyhedron(shape, export):
     distance = numpy.linalg.norm(rest.vertices, axis=1)[rest.faces].mean(axis=1)
     facing = (rest.area_faces * rest.face_normals.T).T @ DIRECTION
     expected = gamma * (rest.volume + BETA * (distance * facing).sum())
-    # Every corner is off by at most 2^-24 of its local coordinates' length: the volume by that times the area.
+    # Every corner is off by at most 2^-24 of its local coordinates' length: the volume by that times
+    # the area.
     limit = 2**-24 * numpy.linalg.norm(seen.vertices, axis=1).max() * seen.area
     assert abs(seen.volume - expected) <= limit
 
