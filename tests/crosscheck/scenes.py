@@ -42,6 +42,7 @@ TORUS = {
             "name": "torus",
             "shape": {"torus": {"major_radius": 2, "minor_radius": 0.5, "resolution": 32}},
             "position": [0, 1, -3],
+            "scale": 2,
         }
     ],
 }

@@ -79,13 +79,27 @@ def test_stdout_holds_the_same_file(export, photosurface):
 
 
 def test_facts_about_each_step(export):
-    """Step, proper time and relative gamma as the oracle knows them."""
+    """Counts, step, proper time and relative gamma as the file and the oracle know them."""
     for node in glb.Gltf(export(SEVERAL)).nodes:
         if node.name == "observer":
             continue
         facts = node.extras
+        assert facts["name"] == node.name
+        assert (facts["vertices"], facts["triangles"]) == (len(node.positions), len(node.triangles))
         (spec,) = [spec for spec in SEVERAL["objects"] if spec["name"] == facts["object"]]
         assert facts["proper_time"] == SEVERAL["steps"][facts["step"]]
         gamma = View(Observer.of_scene(SEVERAL), Source.of_object(spec)).relative_gamma()
         # Two speeds given to half an ulp, a composition and a cosh.
         assert abs(facts["relative_gamma"] / gamma - 1) < 2**-49
+
+
+def test_colours_are_written_linear(export):
+    """glTF's factors are linear, "#rrggbb" is sRGB: by the two-piece curve of IEC 61966-2-1."""
+    document = glb.Gltf(export(SEVERAL))
+    (drum, *_) = [node for node in document.nodes if node.name.startswith("drum")]
+    (primitive,) = drum.mesh["primitives"]
+    material = document.json["materials"][primitive["material"]]
+    *colour, opacity = material["pbrMetallicRoughness"]["baseColorFactor"]
+    linear = [((value / 255 + 0.055) / 1.055) ** 2.4 for value in (0xC0, 0x40, 0x20)]
+    assert abs(numpy.array(colour) - linear).max() < 2**-23  # written with the digits of an f32
+    assert opacity == 1

@@ -121,7 +121,7 @@ def test_a_mesh_from_elsewhere_without_a_scene_file(export, tmp_path):
 
 def test_the_direction_defaults_to_that_of_a_gltf_camera(export, tmp_path):
     mesh = write_airplane(tmp_path)
-    document = glb.Gltf(export(mesh, "--gamma", "3"))
+    document = glb.Gltf(export(mesh, "--gamma", "3", "--observer", "0,0,0"))
     (source,) = glb.Gltf(mesh).nodes
     observer = {"velocity": {"gamma": 3, "direction": [0, 0, -1]}}
     (view,) = views({"observer": observer, "objects": [{}]})
