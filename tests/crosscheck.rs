@@ -115,6 +115,8 @@ fn install_once(stamp: &Path, pins: &str, install: impl FnOnce()) {
     if fs::read_to_string(stamp).is_ok_and(|installed| installed == pins) {
         return;
     }
+    // Gone first: an installation that fails half way must not pass for the one before it.
+    let _ = fs::remove_file(stamp); // absent on the first run
     install();
     fs::write(stamp, pins).expect("the target directory is writable");
 }
