@@ -16,9 +16,12 @@ def pytest_configure():
 def photosurface():
     """Runs the binary with these arguments; it has to succeed. Returns what it printed, as bytes."""
 
-    def run(*arguments, stdin=b""):
+    def run(*arguments, stdin=b"", threads=None):
         command = [os.environ["PHOTOSURFACE_BINARY"], *map(str, arguments)]
-        done = subprocess.run(command, input=stdin, capture_output=True, timeout=120)
+        environment = os.environ | ({"RAYON_NUM_THREADS": str(threads)} if threads else {})
+        done = subprocess.run(
+            command, input=stdin, capture_output=True, timeout=120, env=environment
+        )
         assert done.returncode == 0, f"{command} gave {done.returncode}\n{done.stderr.decode()}"
         return done.stdout
 
