@@ -3,7 +3,7 @@
 The limits are not chosen but derived. A vertex in a .glb is an f64 translation plus an f32 number, which
 rounding to nearest takes from the truth by at most 2^-24 of itself. What f64 loses on the way is limited
 by ROUNDINGS half-units of `View.rounding_scale`, the size of the terms that any honest evaluation adds:
-some ten in each of placing, boost and map.
+some five in each of placing, boost and map.
 """
 
 import numpy
@@ -17,7 +17,7 @@ from scenes import CUBE, SPHERE, TORUS, write_airplane, write_obj
 
 F32 = mpf(2) ** -24
 F64 = mpf(2) ** -53
-ROUNDINGS = 32
+ROUNDINGS = 16
 
 
 def steps_of(scene):
