@@ -24,7 +24,7 @@ def draw(binary: str, scene: str) -> None:
     with tempfile.TemporaryDirectory() as directory:
         path = os.path.join(directory, f"{scene}.glb")
         subprocess.run([binary, "export", "--example", scene, "-q", "-o", path], check=True)
-        plotter = pyvista.Plotter(off_screen=True, window_size=(1200, 340))
+        plotter = pyvista.Plotter(off_screen=True, window_size=(1200, 280))
         plotter.import_gltf(path)
     plotter.set_background("white")
     plotter.remove_all_lights()
