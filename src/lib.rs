@@ -27,8 +27,8 @@ mod spacetime;
 pub use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec4};
 
 pub use io::{
-    AccessorProblem, DocumentProblem, Export, FileNotes, LoadError, NodeProblem, Note, ObjProblem,
-    ReadError, Report, StageTime, UriProblem, WriteError, check_destination, load_models,
+    AccessorProblem, DocumentProblem, Export, FileFindings, Findings, LoadError, NodeProblem, Note,
+    ObjProblem, ReadError, Report, StageTime, UriProblem, WriteError, destination, load_models,
     read_gltf_bytes, read_model, write_glb, write_gltf, write_ply, write_whole,
 };
 pub use light_cone::{PhotosurfaceMap, View};

@@ -375,6 +375,35 @@ fn what_is_read_is_never_written_over() {
 }
 
 #[test]
+fn no_two_outputs_are_one_file() {
+    let workplace = with_ball();
+    for arguments in [
+        "-o a.glb --report a.glb",
+        "-o a.glb --report ./a.glb",
+        "-o a.gltf --report a.bin",
+        "-o a.glb --steps 0,1 --split --report a_step001.glb",
+    ] {
+        workplace
+            .run(&format!("export ball.json {arguments}"))
+            .error(&["written over", "which is an output too"]);
+        assert_eq!(workplace.files(), ["ball.json", "square.obj"]);
+    }
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("b.glb", workplace.path("link")).unwrap();
+        workplace
+            .run("export ball.json -o b.glb --report link")
+            .error(&["link: would be written over b.glb"]);
+        workplace.run("export ball.json --report link").success();
+        assert_eq!(
+            workplace.read_json("b.glb")["objects"][0]["object"],
+            "ball",
+            "a link that leads to nothing is followed"
+        );
+    }
+}
+
+#[test]
 fn files_come_in_three_formats_and_one_for_each_step() {
     let workplace = with_ball();
     workplace

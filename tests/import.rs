@@ -27,7 +27,10 @@ fn fixture(name: &str) -> PathBuf {
 /// The model in a fixture, and its notes as text.
 fn read(name: &str) -> (Model, Vec<String>) {
     match read_model(&fixture(name)) {
-        Ok((model, notes)) => (model, notes.iter().map(ToString::to_string).collect()),
+        Ok((model, findings)) => {
+            let notes = findings.notes.iter().map(ToString::to_string);
+            (model, notes.collect())
+        }
         Err(error) => panic!("{name}: {error}"),
     }
 }

@@ -1,5 +1,6 @@
 //! `photosurface export`: photosurfaces as meshes.
 
+use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::io::{IsTerminal, stderr, stdout};
 use std::path::{Path, PathBuf};
@@ -8,7 +9,7 @@ use std::time::Instant;
 use anyhow::{Context, bail, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
 use photosurface::{
-    Export, Facts, Photosurface, Report, Stage, StageTime, Wanted, check_destination, step_label,
+    Export, Facts, Photosurface, Report, Stage, StageTime, Wanted, destination, step_label,
     write_glb, write_gltf, write_ply, write_whole,
 };
 
@@ -177,14 +178,14 @@ impl OutputArgs {
     }
 }
 
-/// Before any work: every file can be written, and none is one of those that are read.
+/// Before any work: every file can be written, none is one of those that are read, and no two are one.
 fn check_destinations(
     files: &[PathBuf],
     format: Format,
     report: Option<&Path>,
     read: &[PathBuf],
 ) -> anyhow::Result<()> {
-    let read: Vec<_> = read
+    let read: HashSet<_> = read
         .iter()
         .filter_map(|file| fs::canonicalize(file).ok())
         .collect();
@@ -193,6 +194,7 @@ fn check_destinations(
         .filter(|_| format == Format::Gltf)
         .map(|file| binary_beside(file));
     let report = report.map(Path::to_owned);
+    let mut written: HashMap<PathBuf, PathBuf> = HashMap::new();
     for file in files
         .iter()
         .cloned()
@@ -200,13 +202,20 @@ fn check_destinations(
         .chain(report)
         .filter(|file| !is_stdout(file))
     {
-        check_destination(&file)?;
-        let place = fs::canonicalize(&file);
+        let place = destination(&file)?;
         ensure!(
-            !place.is_ok_and(|place| read.contains(&place)),
-            "{}: would be written over what is read from it; choose another name",
+            !read.contains(&place),
+            "{}: would be written over what is read; choose another name",
             file.display()
         );
+        if let Some(other) = written.get(&place) {
+            bail!(
+                "{}: would be written over {}, which is an output too; choose another name",
+                file.display(),
+                other.display()
+            );
+        }
+        written.insert(place, file);
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use photosurface::{
-    BUILT_IN_SCENES, DVec3, Model, Note, Object, Observer, Scene, Source, load_models,
+    BUILT_IN_SCENES, DVec3, Findings, Model, Object, Observer, Scene, Source, load_models,
     read_gltf_bytes, read_model,
 };
 
@@ -26,7 +26,7 @@ pub(super) struct Input {
     pub(super) scene: Scene,
     /// One for each object of the scene.
     pub(super) models: Vec<Model>,
-    /// The files it was read from, for they must not be written over.
+    /// The files it was read from, for they must not be written over: also buffers, images and libraries.
     pub(super) files: Vec<PathBuf>,
 }
 
@@ -51,8 +51,8 @@ impl Input {
                     .read_to_end(&mut bytes)
                     .context("stdin")?;
                 if bytes.starts_with(b"glTF") {
-                    let (model, notes) = read_gltf_bytes(&bytes, Path::new("")).context("stdin")?;
-                    return Self::from_mesh("mesh", model, &notes, None, observer, verbosity);
+                    let read = read_gltf_bytes(&bytes, Path::new("")).context("stdin")?;
+                    return Self::from_mesh("mesh", read, None, observer, verbosity);
                 }
                 let text = String::from_utf8(bytes).context("stdin is neither a GLB nor text")?;
                 let scene = Scene::from_json(&text).context("stdin")?;
@@ -81,8 +81,8 @@ impl Input {
                 Self::from_scene(&name, scene, Some(path), observer, verbosity)
             }
             Some("glb" | "gltf" | "obj") => {
-                let (model, notes) = read_model(path).with_context(|| place)?;
-                Self::from_mesh(&name, model, &notes, Some(path), observer, verbosity)
+                let read = read_model(path).with_context(|| place)?;
+                Self::from_mesh(&name, read, Some(path), observer, verbosity)
             }
             _ => bail!(
                 "{place}: unknown extension, expected a scene (.json) or a mesh (.glb, .gltf, .obj)"
@@ -99,24 +99,17 @@ impl Input {
     ) -> anyhow::Result<Self> {
         let scene = observer.apply(scene)?;
         let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
-        let (models, notes) = load_models(&scene, directory)?;
-        for (file, note) in notes {
-            verbosity.note(format_args!("{}: {note}", file.display()));
+        let (models, found) = load_models(&scene, directory)?;
+        let mut files: Vec<PathBuf> = path.map(Path::to_owned).into_iter().collect();
+        for (file, findings) in found {
+            for note in findings.notes {
+                verbosity.note(format_args!("{}: {note}", file.display()));
+            }
+            files.extend(findings.files);
         }
-        let referenced = scene
-            .objects()
-            .iter()
-            .filter_map(|object| match &object.source {
-                Source::File(file) => Some(directory.join(file)),
-                Source::Shape(..) | Source::Model(_) => None,
-            });
         Ok(Self {
             name: name.to_owned(),
-            files: path
-                .map(Path::to_owned)
-                .into_iter()
-                .chain(referenced)
-                .collect(),
+            files,
             models,
             scene,
         })
@@ -125,13 +118,12 @@ impl Input {
     /// A bare mesh, at rest at the origin; the observer, unless placed, moves towards it.
     fn from_mesh(
         name: &str,
-        model: Model,
-        notes: &[Note],
+        (model, findings): (Model, Findings),
         path: Option<&Path>,
         flags: &ObserverArgs,
         verbosity: Verbosity,
     ) -> anyhow::Result<Self> {
-        for note in notes {
+        for note in &findings.notes {
             let place = path.map_or("stdin".into(), |path| path.display().to_string());
             verbosity.note(format_args!("{place}: {note}"));
         }
@@ -150,7 +142,7 @@ impl Input {
             name: name.to_owned(),
             scene,
             models: vec![model],
-            files: path.map(Path::to_owned).into_iter().collect(),
+            files: findings.files,
         })
     }
 }

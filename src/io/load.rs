@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::read::{Note, ReadError, read_model};
+use super::read::{Findings, ReadError, read_model};
 use crate::mesh::{Model, ShapeError};
 use crate::scene::{Scene, Source};
 
@@ -33,8 +33,8 @@ pub enum LoadError {
     },
 }
 
-/// What there is to know about files that were read, each note with its file.
-pub type FileNotes = Vec<(PathBuf, Note)>;
+/// What there is to know about each of the files that objects name.
+pub type FileFindings = Vec<(PathBuf, Findings)>;
 
 /// One model for each object of a scene, in their order, and what there is to know about the files; file
 /// names are relative to `directory`. A file that several objects use is read once.
@@ -42,9 +42,12 @@ pub type FileNotes = Vec<(PathBuf, Note)>;
 /// # Errors
 ///
 /// The first file that cannot be read, or shape that cannot be made.
-pub fn load_models(scene: &Scene, directory: &Path) -> Result<(Vec<Model>, FileNotes), LoadError> {
+pub fn load_models(
+    scene: &Scene,
+    directory: &Path,
+) -> Result<(Vec<Model>, FileFindings), LoadError> {
     let mut known: HashMap<PathBuf, Model> = HashMap::new();
-    let mut notes = Vec::new();
+    let mut files = Vec::new();
     let mut models = Vec::with_capacity(scene.objects().len());
     for object in scene.objects() {
         let model = match &object.source {
@@ -56,7 +59,7 @@ pub fn load_models(scene: &Scene, directory: &Path) -> Result<(Vec<Model>, FileN
                         path: path.clone(),
                         source: Box::new(source),
                     })?;
-                    notes.extend(found.into_iter().map(|note| (path.clone(), note)));
+                    files.push((path.clone(), found));
                     known.insert(path.clone(), model);
                 }
                 known[&path].clone()
@@ -71,5 +74,5 @@ pub fn load_models(scene: &Scene, directory: &Path) -> Result<(Vec<Model>, FileN
         };
         models.push(model);
     }
-    Ok((models, notes))
+    Ok((models, files))
 }

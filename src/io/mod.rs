@@ -4,12 +4,12 @@ mod load;
 mod read;
 mod write;
 
-pub use load::{FileNotes, LoadError, load_models};
+pub use load::{FileFindings, LoadError, load_models};
 pub use read::{
-    AccessorProblem, DocumentProblem, NodeProblem, Note, ObjProblem, ReadError, UriProblem,
-    read_gltf_bytes, read_model,
+    AccessorProblem, DocumentProblem, Findings, NodeProblem, Note, ObjProblem, ReadError,
+    UriProblem, read_gltf_bytes, read_model,
 };
 pub use write::{
-    Export, Report, StageTime, WriteError, check_destination, write_glb, write_gltf, write_ply,
+    Export, Report, StageTime, WriteError, destination, write_glb, write_gltf, write_ply,
     write_whole,
 };

@@ -6,15 +6,13 @@
 //! extensions without regard to what they mean; it refuses accessors without a buffer view, animations
 //! by extensions, and scenes without nodes.
 
-use std::path::Path;
-
 use gltf::json::validation::{Checked, Error as Invalid, Validate};
 use gltf::json::{Root, Value, mesh::Semantic};
 use serde::Deserialize;
 
 use super::extensions;
 use super::note::Note;
-use super::uri::read_uri;
+use super::uri::{Folder, read_uri};
 use super::{DocumentProblem, ReadError};
 
 /// A glTF file whose references are all in range.
@@ -42,7 +40,7 @@ pub(super) struct Placement {
 /// Takes apart a GLB or glTF file; buffers outside it are looked for in `folder`.
 pub(super) fn read_document(
     bytes: &[u8],
-    folder: &Path,
+    folder: &Folder,
     notes: &mut Vec<Note>,
 ) -> Result<Document, ReadError> {
     let (json, mut binary) = split(bytes)?;
@@ -239,7 +237,7 @@ mod tests {
     use super::*;
 
     fn read(json: &str) -> Result<Document, ReadError> {
-        read_document(json.as_bytes(), Path::new("."), &mut vec![])
+        read_document(json.as_bytes(), &Folder::new(".".as_ref()), &mut vec![])
     }
 
     fn message(json: &str) -> String {

@@ -15,7 +15,8 @@ use super::names::tell_apart;
 use super::nodes::{self, Tree, node_name, read_tree};
 use super::note::{Note, add_note, plural};
 use super::primitive::{Source, read_primitive};
-use super::{NodeProblem, ReadError};
+use super::uri::Folder;
+use super::{Findings, NodeProblem, ReadError};
 use crate::mesh::{Material, Mesh, Model, Part};
 
 /// A mesh in the coordinates of the scene.
@@ -34,12 +35,13 @@ struct Piece {
 /// # Errors
 ///
 /// Anything that keeps a part of the surface from being read as glTF 2.0 defines it.
-pub fn read_gltf_bytes(bytes: &[u8], folder: &Path) -> Result<(Model, Vec<Note>), ReadError> {
+pub fn read_gltf_bytes(bytes: &[u8], folder: &Path) -> Result<(Model, Findings), ReadError> {
     let mut notes = vec![];
-    let document = read_document(bytes, folder, &mut notes)?;
+    let folder = Folder::new(folder);
+    let document = read_document(bytes, &folder, &mut notes)?;
     let tree = read_tree(&document, &mut notes)?;
     note_other_content(&document, &mut notes);
-    let mut materials = Materials::new(&document, folder);
+    let mut materials = Materials::new(&document, &folder);
     let mut parts = vec![];
     for &node in &tree.drawn {
         let pieces = read_node(&document, &tree, node, &mut materials, &mut notes)?;
@@ -58,7 +60,11 @@ pub fn read_gltf_bytes(bytes: &[u8], folder: &Path) -> Result<(Model, Vec<Note>)
         let instead = content(&document.root, &notes);
         return Err(ReadError::NoTriangles { instead });
     }
-    Ok((Model { parts }, notes))
+    for uri in document.root.images.iter().filter_map(|i| i.uri.as_ref()) {
+        folder.mention(uri);
+    }
+    let files = folder.into_opened();
+    Ok((Model { parts }, Findings { notes, files }))
 }
 
 /// Notes what a file has that is no surface.

@@ -4,7 +4,6 @@
 //! texture, not the file.
 
 use std::collections::HashMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use gltf::json;
@@ -12,13 +11,13 @@ use gltf::json::texture::{MagFilter, MinFilter, WrappingMode};
 
 use super::document::Document;
 use super::note::{Note, add_note};
-use super::uri::read_uri;
+use super::uri::{Folder, read_uri};
 use crate::mesh::{AlphaMode, Filter, Image, Material, Sampler, Texture, Wrap};
 
 /// Materials and images of a file, each made once and shared.
 pub(super) struct Materials<'a> {
     document: &'a Document,
-    folder: &'a Path,
+    folder: &'a Folder<'a>,
     materials: HashMap<usize, Arc<Material>>,
     /// `None` for those that cannot be had.
     images: HashMap<usize, Option<Arc<Image>>>,
@@ -26,7 +25,7 @@ pub(super) struct Materials<'a> {
 
 impl<'a> Materials<'a> {
     /// None so far; external images are looked for in `folder`.
-    pub(super) fn new(document: &'a Document, folder: &'a Path) -> Self {
+    pub(super) fn new(document: &'a Document, folder: &'a Folder<'a>) -> Self {
         Self {
             document,
             folder,

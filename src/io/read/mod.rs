@@ -22,7 +22,7 @@ mod polygon;
 mod primitive;
 mod uri;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub use error::{AccessorProblem, DocumentProblem, NodeProblem, ObjProblem, ReadError, UriProblem};
 pub use gltf_model::read_gltf_bytes;
@@ -32,7 +32,17 @@ use crate::mesh::Model;
 use obj::read_obj_bytes;
 use uri::read_file;
 
-/// Reads the model in a GLB, glTF or OBJ file, and says what of it was left out.
+/// What there is to know about a model beside the model.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Findings {
+    /// What was left out, replaced or chosen.
+    pub notes: Vec<Note>,
+    /// Every file that belongs to it: the file itself, its buffers, images and material libraries. One file
+    /// may be named several times, and an image that is not there.
+    pub files: Vec<PathBuf>,
+}
+
+/// Reads the model in a GLB, glTF or OBJ file, and says what of it was left out and which files were read.
 ///
 /// glTF 2.0: all triangles of the default scene, with the transforms of their nodes, in the default pose of
 /// skins and morph targets. OBJ: all faces. Either with normals, texture coordinates, colours and the base
@@ -42,12 +52,12 @@ use uri::read_file;
 ///
 /// A file that cannot be read, that is not as its format defines it, that needs an extension which is
 /// not known, or that has no triangles.
-pub fn read_model(path: &Path) -> Result<(Model, Vec<Note>), ReadError> {
+pub fn read_model(path: &Path) -> Result<(Model, Findings), ReadError> {
     let extension = path.extension().unwrap_or_default();
     let extension = extension.to_string_lossy().to_lowercase();
     let folder = path.parent().unwrap_or(Path::new(""));
     let bytes = read_file(path, u64::MAX)?;
-    match extension.as_str() {
+    let (model, mut findings) = match extension.as_str() {
         "glb" | "gltf" => read_gltf_bytes(&bytes, folder),
         "obj" => {
             let stem = path.file_stem().unwrap_or_default();
@@ -55,5 +65,7 @@ pub fn read_model(path: &Path) -> Result<(Model, Vec<Note>), ReadError> {
         }
         _ if bytes.starts_with(b"glTF") => read_gltf_bytes(&bytes, folder),
         _ => Err(ReadError::UnknownExtension { extension }),
-    }
+    }?;
+    findings.files.insert(0, path.to_owned());
+    Ok((model, findings))
 }

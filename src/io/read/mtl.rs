@@ -9,12 +9,12 @@ use std::sync::Arc;
 
 use super::materials::{make_image, reason};
 use super::note::{Note, add_note};
-use super::uri::read_file;
+use super::uri::Folder;
 use crate::mesh::{AlphaMode, Image, Material, Sampler, Texture};
 
 /// The materials of a library, with their textures; none where it cannot be read.
-pub(super) fn read_library(path: &Path, notes: &mut Vec<Note>) -> Vec<Material> {
-    let bytes = match read_file(path, u64::MAX) {
+pub(super) fn read_library(path: &Path, files: &Folder, notes: &mut Vec<Note>) -> Vec<Material> {
+    let bytes = match files.read(path, u64::MAX) {
         Ok(bytes) => bytes,
         Err(error) => {
             let path = path.to_owned();
@@ -40,7 +40,7 @@ pub(super) fn read_library(path: &Path, notes: &mut Vec<Note>) -> Vec<Material> 
         return vec![];
     };
     let folder = path.parent().unwrap_or(Path::new(""));
-    let make = |material: &tobj::Material| make_material(material, folder, notes);
+    let make = |material: &tobj::Material| make_material(material, folder, files, notes);
     materials.iter().map(make).collect()
 }
 
@@ -78,7 +78,12 @@ fn sound_lines(text: &str) -> (String, Vec<usize>) {
     (sound, malformed)
 }
 
-fn make_material(source: &tobj::Material, folder: &Path, notes: &mut Vec<Note>) -> Material {
+fn make_material(
+    source: &tobj::Material,
+    folder: &Path,
+    files: &Folder,
+    notes: &mut Vec<Note>,
+) -> Material {
     let left = source.unknown_param.keys();
     let left: BTreeSet<&str> = left.filter_map(|name| name.strip_prefix("left_")).collect();
     if !left.is_empty() {
@@ -99,7 +104,7 @@ fn make_material(source: &tobj::Material, folder: &Path, notes: &mut Vec<Note>) 
         .unwrap_or([1.0; 3])
         .map(|c| c.clamp(0.0, 1.0) as f32);
     let image = source.diffuse_texture.as_ref();
-    let image = image.and_then(|words| read_texture(words, folder, notes));
+    let image = image.and_then(|words| read_texture(words, folder, files, notes));
     Material {
         name: Some(source.name.clone()),
         base_color: [r, g, b, opacity],
@@ -128,7 +133,12 @@ fn roughness(shininess: f64) -> f32 {
 }
 
 /// The image that `map_Kd` names; its options, which start with a dash, are passed over.
-fn read_texture(words: &str, folder: &Path, notes: &mut Vec<Note>) -> Option<Image> {
+fn read_texture(
+    words: &str,
+    folder: &Path,
+    files: &Folder,
+    notes: &mut Vec<Note>,
+) -> Option<Image> {
     let name = match words.starts_with('-') {
         true => words.split_whitespace().next_back().unwrap_or_default(),
         false => words,
@@ -137,7 +147,8 @@ fn read_texture(words: &str, folder: &Path, notes: &mut Vec<Note>) -> Option<Ima
     let relative = name.replace('\\', "/");
     let stem = Path::new(&relative).file_stem();
     let stem = stem.map(|stem| stem.to_string_lossy().into_owned());
-    let image = read_file(&folder.join(&relative), u64::MAX)
+    let image = files
+        .read(&folder.join(&relative), u64::MAX)
         .map_err(|error| reason(&error))
         .and_then(|bytes| make_image(stem, bytes).ok_or_else(|| "neither PNG nor JPEG".to_owned()));
     let dropped = |reason| Note::Image {

@@ -8,13 +8,14 @@ use std::sync::Arc;
 use glam::{DVec3, Vec2, Vec4};
 use tobj::LoadOptions;
 
-use super::ReadError;
 use super::mtl::read_library;
 use super::names::tell_apart;
 use super::normals::replace_zero_normals;
 use super::note::{Note, add_note, plural};
 use super::obj_lines::{Prepared, prepare};
 use super::polygon::triangulate;
+use super::uri::Folder;
+use super::{Findings, ReadError};
 use crate::mesh::{Material, Mesh, MeshError, Model, Part};
 
 /// Reads the bytes of an OBJ file; libraries and textures are looked for in `folder`, and parts without a
@@ -23,7 +24,8 @@ pub(super) fn read_obj_bytes(
     bytes: &[u8],
     folder: &Path,
     default_name: &str,
-) -> Result<(Model, Vec<Note>), ReadError> {
+) -> Result<(Model, Findings), ReadError> {
+    let folder = Folder::new(folder);
     let prepared = prepare(&String::from_utf8_lossy(bytes))?;
     let mut notes = vec![];
     note_other_content(&prepared, &mut notes);
@@ -36,7 +38,7 @@ pub(super) fn read_obj_bytes(
     };
     let loaded = tobj::load_obj_buf(&mut prepared.text.as_bytes(), &options, |library| {
         let (materials, notes) = &mut *libraries.borrow_mut();
-        Ok(load_libraries(library, folder, materials, notes))
+        Ok(load_libraries(library, &folder, materials, notes))
     });
     let (models, _) = loaded.map_err(ReadError::Obj)?;
     let (materials, mut notes) = libraries.into_inner();
@@ -62,7 +64,8 @@ pub(super) fn read_obj_bytes(
         let instead = format!("no faces{skipped}");
         return Err(ReadError::NoTriangles { instead });
     }
-    Ok((Model { parts }, notes))
+    let files = folder.into_opened();
+    Ok((Model { parts }, Findings { notes, files }))
 }
 
 fn note_other_content(prepared: &Prepared, notes: &mut Vec<Note>) {
@@ -88,21 +91,21 @@ fn note_other_content(prepared: &Prepared, notes: &mut Vec<Note>) {
 /// `tobj` the names of their materials, which is all it needs.
 fn load_libraries(
     names: &Path,
-    folder: &Path,
+    folder: &Folder,
     materials: &mut Vec<Arc<Material>>,
     notes: &mut Vec<Note>,
 ) -> (Vec<tobj::Material>, HashMap<String, usize>) {
     let names = names.to_string_lossy().replace('\\', "/");
-    let paths = match folder.join(&names).exists() {
-        true => vec![folder.join(&names)],
+    let paths = match folder.path().join(&names).exists() {
+        true => vec![folder.path().join(&names)],
         false => names
             .split_whitespace()
-            .map(|name| folder.join(name))
+            .map(|name| folder.path().join(name))
             .collect(),
     };
     let new: Vec<Material> = paths
         .iter()
-        .flat_map(|path| read_library(path, notes))
+        .flat_map(|path| read_library(path, folder, notes))
         .collect();
     let named = |material: &Material| tobj::Material {
         name: material.name.clone().unwrap_or_default(),
@@ -245,7 +248,9 @@ mod tests {
     use super::*;
 
     fn read(file: &str) -> (Model, Vec<Note>) {
-        read_obj_bytes(file.as_bytes(), Path::new("nowhere"), "stem").unwrap()
+        let read = read_obj_bytes(file.as_bytes(), Path::new("nowhere"), "stem");
+        let (model, findings) = read.unwrap();
+        (model, findings.notes)
     }
 
     const CORNERS: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";

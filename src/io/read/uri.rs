@@ -3,6 +3,7 @@
 //! glTF 2.0, section 2.8: relative paths as in RFC 3986, with reserved characters percent-encoded,
 //! and data URIs as in RFC 2397. Everything else would have to be fetched and is refused.
 
+use std::cell::RefCell;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -12,10 +13,48 @@ use percent_encoding::percent_decode_str;
 
 use super::{ReadError, UriProblem};
 
+/// The folder of a file, in which those that it refers to are looked for; keeps account of what was opened.
+pub(super) struct Folder<'a> {
+    path: &'a Path,
+    opened: RefCell<Vec<PathBuf>>,
+}
+
+impl<'a> Folder<'a> {
+    pub(super) fn new(path: &'a Path) -> Self {
+        Self {
+            path,
+            opened: RefCell::default(),
+        }
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        self.path
+    }
+
+    /// The bytes of a file, at most `limit` of them.
+    pub(super) fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, ReadError> {
+        let bytes = read_file(path, limit)?;
+        self.opened.borrow_mut().push(path.to_owned());
+        Ok(bytes)
+    }
+
+    /// Takes account of a file that `uri` refers to and nobody needs: it belongs to what is read all the same.
+    pub(super) fn mention(&self, uri: &str) {
+        if let (None, Ok(relative)) = (scheme(uri), decode_path(uri)) {
+            self.opened.borrow_mut().push(self.path.join(relative));
+        }
+    }
+
+    /// All files that were read or mentioned.
+    pub(super) fn into_opened(self) -> Vec<PathBuf> {
+        self.opened.into_inner()
+    }
+}
+
 /// The bytes that `uri` stands for, at most `limit` of them; `place` says where it stands.
 pub(super) fn read_uri(
     uri: &str,
-    folder: &Path,
+    folder: &Folder,
     limit: u64,
     place: &str,
 ) -> Result<Vec<u8>, ReadError> {
@@ -31,7 +70,7 @@ pub(super) fn read_uri(
         })),
         None => {
             let relative = decode_path(uri).map_err(wrong)?;
-            read_file(&folder.join(relative), limit)
+            folder.read(&folder.path.join(relative), limit)
         }
     }
 }
@@ -93,7 +132,12 @@ mod tests {
     use super::*;
 
     fn read(uri: &str) -> Result<Vec<u8>, ReadError> {
-        read_uri(uri, Path::new("nowhere"), 100, "buffers[0].uri")
+        read_uri(
+            uri,
+            &Folder::new(Path::new("nowhere")),
+            100,
+            "buffers[0].uri",
+        )
     }
 
     #[test]

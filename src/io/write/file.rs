@@ -8,16 +8,20 @@ use tempfile::{Builder, NamedTempFile};
 
 use super::WriteError;
 
-/// Says whether `path` could be written, without touching what may stand there: to be asked before long
-/// work is begun.
+/// Links that are followed before they are taken to go round in circles, as on Linux.
+const MOST_LINKS: usize = 40;
+
+/// The place that writing to `path` would change, links followed: the same for all names of one file, also
+/// of one that does not exist yet. Says whether it could be written, without touching what may stand there:
+/// to be asked before long work is begun.
 ///
 /// # Errors
 ///
 /// The directory does not exist or cannot be written to, or `path` is a directory.
-pub fn check_destination(path: &Path) -> Result<(), WriteError> {
+pub fn destination(path: &Path) -> Result<PathBuf, WriteError> {
     match Destination::of(path)? {
-        Destination::Special(_) => Ok(()),
-        Destination::Regular(place) => temporary_beside(&place).map(drop),
+        Destination::Special(place) => Ok(place),
+        Destination::Regular(place) => temporary_beside(&place).map(|_| place),
     }
     .map_err(|source| io_error(path, source))
 }
@@ -75,16 +79,40 @@ impl Destination {
                     Self::Special(place)
                 })
             }
-            Err(_) => Ok(Self::Regular(path.to_owned())),
+            Err(_) => new_file(path)
+                .map(Self::Regular)
+                .map_err(|source| io_error(path, source)),
         }
     }
 }
 
-fn temporary_beside(place: &Path) -> std::io::Result<NamedTempFile> {
-    let directory = match place.parent() {
+/// Where a file that does not exist yet would come to stand; a link that leads to nothing says where.
+fn new_file(path: &Path) -> std::io::Result<PathBuf> {
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Some(name) = path.file_name() else {
+            return Err(std::io::ErrorKind::IsADirectory.into());
+        };
+        let place = fs::canonicalize(directory_of(&path))?.join(name);
+        match fs::read_link(&place) {
+            // A relative link starts from where it stands.
+            Ok(target) => path = directory_of(&place).join(target),
+            Err(_) => return Ok(place),
+        }
+    }
+    Err(std::io::Error::other(
+        "too many links, or links in a circle",
+    ))
+}
+
+fn directory_of(path: &Path) -> &Path {
+    match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
-    };
+    }
+}
+
+fn temporary_beside(place: &Path) -> std::io::Result<NamedTempFile> {
     let mut builder = Builder::new();
     builder.prefix(".photosurface-");
     #[cfg(unix)]
@@ -93,7 +121,7 @@ fn temporary_beside(place: &Path) -> std::io::Result<NamedTempFile> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(directory)
+    builder.tempfile_in(directory_of(place))
 }
 
 fn fill<F: Write>(
@@ -161,15 +189,37 @@ mod tests {
         assert_eq!(mode(&real), mode(&plain));
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn a_link_that_leads_to_nothing_says_where_the_new_file_belongs() {
+        use std::os::unix::fs::symlink;
+        let directory = tempfile::tempdir().unwrap();
+        let path = |name: &str| directory.path().join(name);
+        fs::create_dir(path("far")).unwrap();
+        symlink("far/target", path("link")).unwrap();
+        symlink("link", path("again")).unwrap();
+        assert_eq!(
+            destination(&path("again")).unwrap(),
+            destination(&path("far/../far/target")).unwrap()
+        );
+        write_whole(&path("again"), |writer| Ok(writer.write_all(b"new")?)).unwrap();
+        assert_eq!(fs::read(path("far/target")).unwrap(), b"new");
+        assert!(fs::symlink_metadata(path("link")).unwrap().is_symlink());
+        symlink("round", path("round")).unwrap();
+        let message = destination(&path("round")).unwrap_err();
+        assert!(message.to_string().contains("round"), "{message}");
+    }
+
     #[test]
     fn a_place_that_cannot_be_written_is_named_before_work_begins() {
         let directory = tempfile::tempdir().unwrap();
         let missing = directory.path().join("no/such/place.glb");
-        let message = check_destination(&missing).unwrap_err().to_string();
+        let message = destination(&missing).unwrap_err().to_string();
         assert!(message.contains("place.glb"), "{message}");
-        assert!(check_destination(directory.path()).is_err());
+        assert!(destination(directory.path()).is_err());
         let fine = directory.path().join("fine.glb");
-        check_destination(&fine).unwrap();
+        let place = destination(&fine).unwrap();
+        assert_eq!(place.file_name(), fine.file_name());
         assert!(!fine.exists());
     }
 }

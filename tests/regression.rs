@@ -1,0 +1,48 @@
+//! One test for each bug that was found, with its story.
+
+mod common;
+
+use common::command::Workplace;
+
+/// The header of a PNG, which is all of it that is looked at.
+const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
+
+/// Only the file on the command line and those of the objects were protected: exporting `Cameras.gltf` to
+/// `simpleSquare.gltf` replaced `simpleSquare.bin`, which held the source's own data, and a report could
+/// replace a material library or a texture.
+#[test]
+fn what_a_source_refers_to_is_not_written_over() {
+    let workplace = Workplace::new();
+    let mesh = "o a\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl red\nf 1/1 2/1 3/1\n";
+    workplace.write("a.obj", mesh);
+    workplace.write("a.mtl", "newmtl red\nmap_Kd red.png\n");
+    workplace.write("red.png", PNG);
+    workplace.run("export a.obj -o source.gltf").success();
+    let gltf = workplace.read("source.gltf");
+    std::fs::rename(workplace.path("source.bin"), workplace.path("data.bin")).unwrap();
+    let gltf = String::from_utf8(gltf).unwrap();
+    workplace.write("source.gltf", gltf.replace("source.bin", "data.bin"));
+    workplace.write(
+        "scene.json",
+        r#"{ "objects": [ { "name": "a", "file": "source.gltf" }, { "name": "b", "file": "a.obj" } ] }"#,
+    );
+    let files = workplace.files();
+    let before: Vec<_> = files.iter().map(|file| workplace.read(file)).collect();
+    for (input, output) in [
+        ("source.gltf", "-o data.gltf"),
+        ("source.gltf", "-o out.glb --report data.bin"),
+        ("a.obj", "-o out.glb --report a.mtl"),
+        ("a.obj", "-o out.glb --report ./red.png"),
+        ("scene.json", "-o data.gltf"),
+        ("scene.json", "-o out.glb --report a.mtl"),
+        ("scene.json", "-o out.glb --report red.png"),
+    ] {
+        workplace
+            .run(&format!("export {input} {output}"))
+            .error(&["would be written over what is read"]);
+    }
+    assert_eq!(workplace.files(), files);
+    for (file, before) in files.iter().zip(before) {
+        assert_eq!(workplace.read(file), before, "{file}");
+    }
+}
