@@ -46,3 +46,32 @@ fn what_a_source_refers_to_is_not_written_over() {
         assert_eq!(workplace.read(file), before, "{file}");
     }
 }
+
+/// `eprintln!` panics where stderr cannot be written, so that a full disk turned every exit status into 101.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_stderr_that_is_full_changes_no_exit_status() {
+    let workplace = Workplace::new();
+    let run = workplace.run_shell("photosurface export -v 2>/dev/full");
+    assert_eq!(run.status, 0, "{run}");
+    let run = workplace.run_shell("photosurface export nosuch.json 2>/dev/full");
+    assert_eq!(run.status, 2, "{run}");
+    let run = workplace.run_shell("photosurface export --nonsense 2>/dev/full");
+    assert_eq!(run.status, 2, "{run}");
+}
+
+/// A stdout that could not be written was an error without a name, and none at all where what was left in
+/// the buffer was lost.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_stdout_that_is_full_is_named() {
+    let workplace = Workplace::new();
+    for command in ["schema", "example", "example cube", "check", "export -o -"] {
+        workplace
+            .run_shell(&format!("photosurface {command} >/dev/full"))
+            .error(&["error: stdout: ", "No space left"]);
+    }
+    workplace
+        .run_shell("photosurface export --report - >/dev/full")
+        .error(&["stdout", "No space left"]);
+}

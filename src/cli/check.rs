@@ -1,12 +1,12 @@
 //! `photosurface check`: validates, and says what an export would make, without computing it.
 
-use std::io::{Write, stdout};
+use std::io::Write;
 
 use photosurface::Stage;
 
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
-use super::messages::{Verbosity, grouped};
+use super::messages::{Verbosity, grouped, print};
 
 /// Validate a scene or a mesh, and say what an export would make
 ///
@@ -25,8 +25,11 @@ pub(super) struct CheckArgs {
 pub(super) fn run(args: &CheckArgs) -> anyhow::Result<()> {
     let input = Input::read(&args.input, &args.observer, args.verbosity)?;
     let stage = Stage::new(input.scene, input.models);
+    print(|out| table(&stage, out))
+}
+
+fn table(stage: &Stage, out: &mut dyn Write) -> anyhow::Result<()> {
     let steps = stage.scene().steps().len();
-    let mut out = stdout().lock();
     let (mut all_parts, mut all_vertices, mut all_triangles) = (0, 0, 0);
     writeln!(
         out,

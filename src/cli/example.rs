@@ -1,9 +1,9 @@
 //! `photosurface example`: the scenes that the program carries with it.
 
-use std::io::{Write, stdout};
-
 use anyhow::Context;
 use photosurface::{BUILT_IN_SCENES, BuiltInScene};
+
+use super::messages::print;
 
 /// List the built-in scenes, or print one
 ///
@@ -19,16 +19,14 @@ pub(super) struct ExampleArgs {
 }
 
 pub(super) fn run(args: &ExampleArgs) -> anyhow::Result<()> {
-    let mut out = stdout().lock();
-    match &args.name {
-        Some(name) => out.write_all(built_in(name)?.json.as_bytes())?,
-        None => {
-            for scene in BUILT_IN_SCENES {
-                writeln!(out, "{:<10} {}", scene.name, scene.summary)?;
-            }
-        }
-    }
-    Ok(())
+    let text = match &args.name {
+        Some(name) => built_in(name)?.json.to_owned(),
+        None => BUILT_IN_SCENES
+            .iter()
+            .map(|scene| format!("{:<10} {}\n", scene.name, scene.summary))
+            .collect(),
+    };
+    print(|out| Ok(out.write_all(text.as_bytes())?))
 }
 
 /// The built-in scene of that name, or an error that lists them.

@@ -15,7 +15,7 @@ use photosurface::{
 
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
-use super::messages::{Verbosity, grouped};
+use super::messages::{Verbosity, grouped, print};
 
 /// Write photosurfaces as meshes
 ///
@@ -233,8 +233,7 @@ fn write_file(
         photosurfaces,
     };
     if is_stdout(path) {
-        write_glb(&export, stdout().lock()).context("stdout")?;
-        return Ok(());
+        return print(|out| Ok(write_glb(&export, out)?));
     }
     match format {
         Format::Glb => write_whole(path, |writer| write_glb(&export, writer))?,
@@ -271,7 +270,7 @@ fn write_report(
     let text = report.to_json() + "\n";
     let write = |writer: &mut dyn std::io::Write| Ok(writer.write_all(text.as_bytes())?);
     if is_stdout(path) {
-        write(&mut stdout().lock())?;
+        print(|out| Ok(write(out)?))?;
     } else {
         write_whole(path, write)?;
     }

@@ -1,7 +1,9 @@
 //! What the user is told, on stderr.
-#![allow(clippy::print_stderr)] // The one place that prints.
 
 use std::fmt::Display;
+use std::io::{Write, stderr, stdout};
+
+use anyhow::Context;
 
 /// How much the user wants to be told.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
@@ -24,28 +26,44 @@ impl Verbosity {
     /// Something the user should know about the input.
     pub(super) fn note(self, note: impl Display) {
         if !self.quiet {
-            eprintln!("note: {note}");
+            say(format_args!("note: {note}"));
         }
     }
 
     /// What was done.
     pub(super) fn result(self, result: impl Display) {
         if !self.quiet {
-            eprintln!("{result}");
+            say(result);
         }
     }
 
     /// What only the curious want to know.
     pub(super) fn detail(self, detail: impl Display) {
         if self.verbose {
-            eprintln!("{detail}");
+            say(detail);
         }
     }
 }
 
 /// One error with its causes, in one line.
 pub(super) fn error(error: &anyhow::Error) {
-    eprintln!("error: {error:#}");
+    say(format_args!("error: {error:#}"));
+}
+
+/// One line on stderr. Where nobody can be told (a full disk, a closed pipe) the work goes on, and the exit
+/// status still says how it ended.
+fn say(message: impl Display) {
+    let _ = writeln!(stderr().lock(), "{message}");
+}
+
+/// Writes a result to stdout and makes sure that all of it has gone out.
+pub(super) fn print(
+    write: impl FnOnce(&mut dyn Write) -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
+    let mut out = stdout().lock();
+    write(&mut out)
+        .and_then(|()| Ok(out.flush()?))
+        .context("stdout")
 }
 
 /// A count with its thousands set off, as people read it.

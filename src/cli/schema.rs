@@ -1,8 +1,8 @@
 //! `photosurface schema`: the JSON Schema of the scene file.
 
-use std::io::{Write, stdout};
-
 use photosurface::Scene;
+
+use super::messages::print;
 
 /// Print the JSON Schema of the scene file
 #[derive(Debug, clap::Args)]
@@ -10,6 +10,5 @@ pub(super) struct SchemaArgs {}
 
 pub(super) fn run(_args: &SchemaArgs) -> anyhow::Result<()> {
     let schema = serde_json::to_string_pretty(&Scene::json_schema())?;
-    writeln!(stdout().lock(), "{schema}")?;
-    Ok(())
+    print(|out| Ok(writeln!(out, "{schema}")?))
 }
