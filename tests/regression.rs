@@ -75,3 +75,40 @@ fn a_stdout_that_is_full_is_named() {
         .run_shell("photosurface export --report - >/dev/full")
         .error(&["stdout", "No space left"]);
 }
+
+/// Ctrl-C left `.photosurface-XXXXXX` behind, half written.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_export_leaves_no_file_behind() {
+    use std::process::{Command, Stdio};
+    for signal in ["INT", "TERM"] {
+        let workplace = Workplace::new();
+        // Enough work that the signal comes in its midst, in files that are each begun soon.
+        let mut child = Command::new(env!("CARGO_BIN_EXE_photosurface"))
+            .args(["export", "--steps=-6..6/4000", "--split", "-o", "out.glb"])
+            .current_dir(workplace.path(""))
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        while workplace.files().len() < 3 {
+            assert_eq!(
+                child.try_wait().unwrap(),
+                None,
+                "it ended before the signal"
+            );
+            std::thread::yield_now();
+        }
+        let pid = child.id().to_string();
+        let sent = Command::new("kill").args(["-s", signal, &pid]).status();
+        assert!(sent.unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{signal}");
+        let files = workplace.files();
+        assert!(files.len() < 4000, "it was done before the signal");
+        for file in files {
+            assert!(file.starts_with("out_step"), "{signal}: {file}");
+            let bytes = workplace.read(&file);
+            let length = u32::from_le_bytes(bytes[8..12].try_into().unwrap());
+            assert_eq!(bytes.len(), length as usize, "{file} is whole");
+        }
+    }
+}

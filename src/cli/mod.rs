@@ -23,7 +23,7 @@ const ERROR: u8 = 2;
 ///
 /// Units: the speed of light is 1; lengths and times share one unit. Coordinates are right-handed, y up.
 /// Results go to files, or to stdout with -o -; everything else goes to stderr.
-/// Exit status: 0 done, 2 an error, nothing written.
+/// Exit status: 0 done, 2 an error, nothing written, 130 interrupted.
 #[derive(Debug, Parser)]
 #[command(name = "photosurface", version, max_term_width = 100)]
 struct Cli {
@@ -39,9 +39,17 @@ enum Command {
     Schema(schema::SchemaArgs),
 }
 
+/// Exit status after Ctrl-C or a signal that ends the program, as shells have it.
+const INTERRUPTED: i32 = 130;
+
 /// Runs the command line of this process.
 pub(crate) fn run() -> ExitCode {
     let cli = Cli::parse();
+    // A handler that cannot be set leaves the system's own, which ends the program too.
+    let _ = ctrlc::set_handler(|| {
+        photosurface::abandon_writes();
+        std::process::exit(INTERRUPTED);
+    });
     let done = match cli.command {
         Command::Export(args) => export::run(&args),
         Command::Check(args) => check::run(&args),

@@ -1,8 +1,10 @@
 //! Files that appear whole or not at all: written beside their place, then renamed.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::{Builder, NamedTempFile};
 
@@ -49,8 +51,7 @@ pub fn write_whole(
             let file = temporary_beside(&place).map_err(|source| io_error(path, source))?;
             let file = fill(file, path, content)?;
             file.persist(&place)
-                .map(drop)
-                .map_err(|error| io_error(path, error.error))
+                .map_err(|source| io_error(path, source))
         }
     }
 }
@@ -112,7 +113,72 @@ fn directory_of(path: &Path) -> &Path {
     }
 }
 
-fn temporary_beside(place: &Path) -> std::io::Result<NamedTempFile> {
+/// The temporary files of all writes in progress.
+static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    // A set of names is sound whoever panicked.
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes the temporary files of all writes in progress, and stops all writing for good: for a program that
+/// was told to end and does so right after. What was finished before stays.
+pub fn abandon_writes() {
+    let unfinished = unfinished();
+    for path in unfinished.iter() {
+        // There is nobody left to tell.
+        let _ = fs::remove_file(path);
+    }
+    // Never unlocked: no file can be begun or finished any more.
+    std::mem::forget(unfinished);
+}
+
+/// A temporary file that [`abandon_writes`] knows of.
+struct Unfinished {
+    file: Option<NamedTempFile>,
+    path: PathBuf,
+}
+
+impl Unfinished {
+    fn begin(make: impl FnOnce() -> std::io::Result<NamedTempFile>) -> std::io::Result<Self> {
+        let mut unfinished = unfinished();
+        let file = make()?;
+        // Absolute or not: the program never changes its directory.
+        let path = file.path().to_owned();
+        unfinished.insert(path.clone());
+        let file = Some(file);
+        Ok(Self { file, path })
+    }
+
+    fn persist(mut self, place: &Path) -> std::io::Result<()> {
+        let file = self.file.take().expect("only this takes it, and only once");
+        // Held while the file gets its name: it is either unfinished or finished.
+        let unfinished = unfinished();
+        let persisted = file.persist(place);
+        drop(unfinished);
+        persisted.map(drop).map_err(|error| error.error)
+    }
+}
+
+impl Write for Unfinished {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.file.as_mut().map_or(Ok(0), |file| file.write(bytes))
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.file.as_mut().map_or(Ok(()), Write::flush)
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        // The file first: it must not be there when its name is forgotten.
+        drop(self.file.take());
+        unfinished().remove(&self.path);
+    }
+}
+
+fn temporary_beside(place: &Path) -> std::io::Result<Unfinished> {
     let mut builder = Builder::new();
     builder.prefix(".photosurface-");
     #[cfg(unix)]
@@ -121,7 +187,7 @@ fn temporary_beside(place: &Path) -> std::io::Result<NamedTempFile> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(directory_of(place))
+    Unfinished::begin(|| builder.tempfile_in(directory_of(place)))
 }
 
 fn fill<F: Write>(

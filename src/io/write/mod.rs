@@ -8,7 +8,7 @@ mod ply;
 mod report;
 
 pub use error::WriteError;
-pub use file::{destination, write_whole};
+pub use file::{abandon_writes, destination, write_whole};
 pub use gltf::{write_glb, write_gltf};
 pub use ply::write_ply;
 pub use report::{Report, StageTime};
