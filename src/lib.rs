@@ -23,6 +23,7 @@ mod mesh;
 mod photosurface;
 mod scene;
 mod spacetime;
+mod tessellate;
 
 pub use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec4};
 
@@ -40,6 +41,7 @@ pub use mesh::{
 pub use photosurface::{Facts, Photosurface, SceneFacts, Stage, Wanted, step_label};
 pub use scene::{
     BUILT_IN_SCENES, BuiltInScene, InvalidScene, Object, Observer, Scene, SceneError, Source,
-    even_steps,
+    Tolerance, ToleranceError, even_steps,
 };
 pub use spacetime::{Event, Lorentz, MAX_RAPIDITY, Velocity, VelocityError, WorldLine};
+pub use tessellate::{Certificate, Precision, edge_gap, triangle_gap, triangle_gap_place};

@@ -1,16 +1,22 @@
 //! The pipeline: a scene and its models in, the photosurface of every part at every step out.
 
+mod facts;
+mod plan;
+
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use glam::DVec4;
+use glam::{DAffine3, DVec4};
 use rayon::prelude::*;
-use serde::Serialize;
 
 use crate::light_cone::View;
 use crate::mesh::{Appearance, Color, Material, Mesh, Model, Part, Shape};
-use crate::scene::{Object, Scene};
+use crate::scene::{Object, Scene, Source};
 use crate::spacetime::Velocity;
+use crate::tessellate::Precision;
+use plan::{Plan, Surface};
+
+pub use facts::{Facts, SceneFacts};
 
 /// Vertices a thread takes at a time: enough to outweigh handing them over.
 const VERTICES_PER_JOB: usize = 4096;
@@ -42,8 +48,8 @@ const MARKER_RESOLUTION: u32 = 24;
 pub struct Stage {
     scene: Scene,
     marker: Option<Part>,
-    /// For every object its parts in its rest frame, each with its name in files.
-    objects: Vec<Vec<(String, Part)>>,
+    /// For every object of the scene.
+    objects: Vec<Placed>,
 }
 
 /// The photosurface of one part of one object at one step.
@@ -51,8 +57,8 @@ pub struct Stage {
 pub struct Photosurface {
     /// What it is and how it came about.
     pub facts: Facts,
-    /// Its geometry in the observer's frame, observer at the origin: the vertices and triangles of the part
-    /// at rest, in the same order.
+    /// Its geometry in the observer's frame, observer at the origin: the vertices of the part at rest, in
+    /// the same order, then those that were added.
     pub mesh: Mesh,
     /// Frequency seen over frequency emitted, at each vertex; only where it was asked for.
     pub doppler_factors: Option<Vec<f64>>,
@@ -60,58 +66,48 @@ pub struct Photosurface {
     pub material: Option<Arc<Material>>,
 }
 
-/// What a photosurface is, in words and numbers: the same in files and in the report.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Facts {
-    /// Names it in files: unique there, ASCII letters, digits, `_` and `-` only.
-    pub name: String,
-    /// The object in the scene.
-    pub object: String,
-    /// The part of the object's model; empty where there is only one and it has no name.
-    pub part: String,
-    /// Which step, from 0.
-    pub step: usize,
-    /// Proper time of the observer at this step, from the observation event.
-    pub proper_time: f64,
-    /// Lorentz factor between object and observer.
-    pub relative_gamma: f64,
-    /// Rapidity between object and observer.
-    pub relative_rapidity: f64,
-    /// How many vertices it has.
-    pub vertices: usize,
-    /// How many triangles it has.
-    pub triangles: usize,
-}
-
-/// What the scene is, in words and numbers: the same in files and in the report.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SceneFacts {
-    /// The scene's title.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub title: Option<String>,
-    /// The program that made the file.
-    pub generator: &'static str,
-    /// Scene time of the observation event.
-    pub observer_time: f64,
-    /// Place of the observation event in the scene frame.
-    pub observer_position: [f64; 3],
-    /// Direction of the observer's motion in the scene frame.
-    pub observer_direction: [f64; 3],
-    /// The observer's speed in the scene frame.
-    pub observer_beta: f64,
-    /// The observer's Lorentz factor in the scene frame.
-    pub observer_gamma: f64,
-    /// The observer's rapidity in the scene frame.
-    pub observer_rapidity: f64,
-    /// Proper times of the steps, from the observation event.
-    pub steps: Vec<f64>,
-}
-
-/// Which quantities are computed beside the shape; none unless asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+/// What is wanted of photosurfaces beside their shape, and how much may be spent.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wanted {
     /// Frequency seen over frequency emitted, at each vertex.
     pub doppler_factors: bool,
+    /// Whether meshes are refined until they are within the tolerance; if not, every vertex stays what it is and
+    /// the certificate tells how far off the mesh is.
+    pub subdivide: bool,
+    /// Aim at this many times the tolerance; certificates are still against the tolerance itself.
+    pub loosening: f64,
+    /// How many digits the file will have.
+    pub precision: Precision,
+}
+
+impl Default for Wanted {
+    /// Meshes within the tolerance, for glTF, and nothing else.
+    fn default() -> Self {
+        Self {
+            doppler_factors: false,
+            subdivide: true,
+            loosening: 1.0,
+            precision: Precision::Single,
+        }
+    }
+}
+
+/// An object's parts in its rest frame.
+#[derive(Clone, Debug)]
+struct Placed {
+    /// Each with its name in files.
+    parts: Vec<(String, Part)>,
+    /// Where they are those of a shape.
+    shaped: Option<Shaped>,
+}
+
+/// A shape, to be made as fine as its tolerance asks for.
+#[derive(Clone, Debug)]
+struct Shaped {
+    shape: Shape,
+    appearance: Appearance,
+    model_to_rest: DAffine3,
+    largest_scale: f64,
 }
 
 impl Stage {
@@ -142,7 +138,10 @@ impl Stage {
                 };
                 (name, part.transformed(&object.model_to_rest()))
             });
-            objects.push(parts.collect());
+            objects.push(Placed {
+                parts: parts.collect(),
+                shaped: Shaped::of(object),
+            });
         }
         Self {
             scene,
@@ -166,12 +165,26 @@ impl Stage {
         self.scene
             .objects()
             .iter()
-            .zip(self.objects.iter().map(Vec::as_slice))
+            .zip(self.objects.iter().map(|placed| placed.parts.as_slice()))
     }
 
     /// The observer's velocity in the rest frame of an object.
     pub fn relative_velocity(&self, object: &Object) -> Velocity {
         self.view(object, 0.0).relative_velocity()
+    }
+
+    /// About how many triangles the photosurfaces of each object will have at one step, in the order of the
+    /// scene; known in a fraction of the time that it takes to make them.
+    ///
+    /// # Panics
+    ///
+    /// If the scene has no such step.
+    pub fn predicted_triangles(&self, step: usize, wanted: Wanted) -> Vec<f64> {
+        let objects = self.scene.objects().iter().zip(&self.objects);
+        let plans = objects.map(|(object, placed)| self.plan(object, placed, step, wanted));
+        plans
+            .map(|plan| plan.predicted_triangles(wanted.subdivide))
+            .collect()
     }
 
     /// The photosurfaces of all parts at one step, in the order of the scene.
@@ -180,34 +193,24 @@ impl Stage {
     ///
     /// If the scene has no such step.
     pub fn photosurfaces(&self, step: usize, wanted: Wanted) -> impl Iterator<Item = Photosurface> {
-        let proper_time = self.scene.steps()[step];
-        self.objects().flat_map(move |(object, parts)| {
-            let view = self.view(object, proper_time);
-            parts.iter().map(move |(name, part)| Photosurface {
-                facts: self.part_facts(object, name, part, step, &view),
-                mesh: seen_mesh(&view, part.mesh()),
+        let objects = self.scene.objects().iter().zip(&self.objects);
+        objects.flat_map(move |(object, placed)| {
+            let view = self.view(object, self.scene.steps()[step]);
+            let surfaces = self.plan(object, placed, step, wanted).carry_out(wanted);
+            surfaces.into_iter().map(move |surface| Photosurface {
                 doppler_factors: wanted
                     .doppler_factors
-                    .then(|| doppler_factors(&view, part.mesh())),
-                material: part.material.clone(),
+                    .then(|| doppler_factors(&view, surface.part.mesh())),
+                material: surface.part.material.clone(),
+                facts: self.part_facts(object, &surface, step, &view),
+                mesh: surface.seen,
             })
         })
     }
 
     /// What the scene is, in words and numbers.
     pub fn facts(&self) -> SceneFacts {
-        let observer = self.scene.observer();
-        SceneFacts {
-            title: self.scene.title().map(str::to_owned),
-            generator: concat!("photosurface ", env!("CARGO_PKG_VERSION")),
-            observer_time: observer.time,
-            observer_position: observer.position.to_array(),
-            observer_direction: observer.velocity.direction().to_array(),
-            observer_beta: observer.velocity.beta(),
-            observer_gamma: observer.velocity.gamma(),
-            observer_rapidity: observer.velocity.rapidity(),
-            steps: self.scene.steps().to_vec(),
-        }
+        SceneFacts::new(&self.scene)
     }
 
     fn view(&self, object: &Object, proper_time: f64) -> View {
@@ -218,30 +221,65 @@ impl Stage {
         )
     }
 
-    fn part_facts(
-        &self,
+    fn plan<'a>(
+        &'a self,
         object: &Object,
-        name: &str,
-        part: &Part,
+        placed: &'a Placed,
         step: usize,
-        view: &View,
-    ) -> Facts {
+        wanted: Wanted,
+    ) -> Plan<'a> {
+        let view = self.view(object, self.scene.steps()[step]);
+        Plan::new(placed, view, self.scene.tolerance(object), wanted)
+    }
+
+    fn part_facts(&self, object: &Object, surface: &Surface, step: usize, view: &View) -> Facts {
         let steps = self.scene.steps();
         let relative = view.relative_velocity();
+        let name = &surface.name;
         Facts {
             name: match steps.len() {
                 1 => name.to_owned(),
                 _ => format!("{name}_{}", step_label(step)),
             },
             object: object.name.clone(),
-            part: part.name.clone(),
+            part: surface.part.name.clone(),
             step,
             proper_time: steps[step],
             relative_gamma: relative.gamma(),
             relative_rapidity: relative.rapidity(),
-            vertices: part.mesh().positions().len(),
-            triangles: part.mesh().triangles().len(),
+            vertices: surface.seen.positions().len(),
+            triangles: surface.seen.triangles().len(),
+            certificate: surface.certificate.clone(),
         }
+    }
+}
+
+impl Shaped {
+    fn of(object: &Object) -> Option<Self> {
+        match &object.source {
+            Source::Shape(shape, appearance) => Some(Self {
+                shape: shape.clone(),
+                appearance: *appearance,
+                model_to_rest: object.model_to_rest(),
+                largest_scale: object.scale.max_element(),
+            }),
+            _ => None,
+        }
+    }
+
+    /// The parts of the same shape with another resolution; names and materials are those of `parts`.
+    fn parts_like(&self, shape: &Shape, parts: &[(String, Part)]) -> Vec<(String, Part)> {
+        let model = shape
+            .model(&self.appearance)
+            .expect("coarser than what a shape may have");
+        let made = parts
+            .iter()
+            .zip(model.parts)
+            .map(|((name, part), mut made)| {
+                made.material = part.material.clone();
+                (name.clone(), made.transformed(&self.model_to_rest))
+            });
+        made.collect()
     }
 }
 

@@ -21,7 +21,7 @@ mod common;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use common::oracle::{self, Oracle, big_vector, small};
+use common::oracle::{self, Big, Oracle, big, big_vector, small};
 use common::{RELATIVE, Random, TURN, Worst, normal_limit};
 use photosurface::{DVec3, Event, PhotosurfaceMap, Velocity};
 
@@ -232,6 +232,139 @@ fn normals_are_right_to_a_few_units_in_the_last_place() {
     });
     axis.check();
     anywhere.check();
+}
+
+/// The largest singular value of the brute-force Jacobian at `at`. One of them is 1: with the trace of
+/// `J^T J` and the determinant the other two follow.
+fn stretch(velocity: &Velocity, at: DVec3) -> Big {
+    let oracle = Oracle::observer_moves(velocity);
+    let at = big_vector(at);
+    let [x, y, z] = DVec3::AXES.map(|axis| oracle.derivative(&at, &big_vector(axis)));
+    let trace = oracle::dot(&x, &x) + oracle::dot(&y, &y) + oracle::dot(&z, &z);
+    larger_singular_value(
+        &(trace - big(1.0)),
+        &oracle::dot(&oracle::cross(&x, &y), &z),
+    )
+}
+
+/// Of two numbers the larger, by the sum of their squares and their product.
+fn larger_singular_value(squares: &Big, product: &Big) -> Big {
+    let discriminant = squares.clone() * squares - big(4.0) * product * product;
+    // Equal but for the rounding of the oracle where nothing is stretched.
+    let root = if discriminant > big(0.0) {
+        discriminant.sqrt()
+    } else {
+        big(0.0)
+    };
+    ((squares.clone() + root) / big(2.0)).sqrt()
+}
+
+/// Rounding up costs 40 epsilon; an angle made larger by 16 epsilon, to be safe, adds half as much to `C` in
+/// `C E`.
+#[test]
+fn stretching_at_a_point_is_bounded_by_little_more() {
+    let mut axis = Worst::new("bound of the stretching, motion along an axis");
+    let mut anywhere = Worst::new("bound of the stretching, any motion");
+    for_each_case(|case, _| {
+        let map = PhotosurfaceMap::new(&case.velocity);
+        let exact = stretch(&case.velocity, case.offset);
+        let bound = map.stretch_bound(case.offset, 0.0);
+        assert!(big(bound) >= exact, "{bound} at {}", case.describe());
+        let size = small(&exact);
+        let limit = 4.0 * RELATIVE * size + 2.0 * case.turn() * case.velocity.rapidity().exp();
+        let worst = if case.along_axis {
+            &mut axis
+        } else {
+            &mut anywhere
+        };
+        worst.record(oracle::error(bound, &exact), limit, size, || {
+            case.describe()
+        });
+    });
+    axis.check();
+    anywhere.check();
+}
+
+/// The largest stretching in a ball is where a line from the observer touches it on the side of the
+/// direction of motion; everywhere else it is less.
+#[test]
+fn stretching_in_a_ball_is_bounded_by_little_more() {
+    let mut worst = Worst::new("bound of the stretching in a ball");
+    for_each_case(|case, random| {
+        let map = PhotosurfaceMap::new(&case.velocity);
+        let part = 10f64.powf(random.between(-6.0, 0.1)).min(0.95);
+        let radius = part * case.distance();
+        let bound = map.stretch_bound(case.offset, radius);
+        for _ in 0..4 {
+            let shift = random.direction() * radius * random.between(0.0, 1.0).cbrt();
+            let exact = stretch(&case.velocity, case.offset + shift);
+            let at = shift.to_array();
+            assert!(big(bound) >= exact, "{bound}, {}, {at:?}", case.describe());
+        }
+        let n = case.velocity.direction();
+        let ahead = case.offset.normalize();
+        // Straight ahead or behind, any direction aside is as good.
+        let aside = ahead.cross(n).cross(ahead);
+        let aside = if aside.length() > 1e-14 {
+            aside.normalize()
+        } else {
+            ahead.any_orthonormal_vector()
+        };
+        let touching = case.offset * (1.0 - part * part)
+            + aside * (radius * ((1.0 - part) * (1.0 + part)).sqrt());
+        // Straight ahead lies inside the ball.
+        let peak = if n.dot(ahead) > 0.0 && n.cross(ahead).length() < part {
+            n * case.distance()
+        } else {
+            touching
+        };
+        let exact = stretch(&case.velocity, peak);
+        let size = small(&exact);
+        // The angle is known to some 10 epsilon, and the touching point of a large ball by 3 times that.
+        let limit = 4.0 * RELATIVE * size + 30.0 * f64::EPSILON * case.velocity.rapidity().exp();
+        worst.record(oracle::error(bound, &exact), limit, size, || {
+            format!("radius {radius}, {}", case.describe())
+        });
+    });
+    worst.check();
+}
+
+/// Behind an observer at rapidity 200 the stretching grows from 1 to `exp(200)` as the angle does from
+/// `exp(-200)`; by `T = gamma^2 (1 + beta^2 + 2 beta cos) + 1` and the Doppler factor.
+#[test]
+fn stretching_is_bounded_by_little_more_at_extreme_rapidities() {
+    let mut worst = Worst::new("bound of the stretching, extreme rapidity");
+    for rapidity in [30.0, 100.0, 200.0] {
+        let velocity = Velocity::from_rapidity(rapidity, DVec3::NEG_Y).expect("valid");
+        let map = PhotosurfaceMap::new(&velocity);
+        let growth = big(rapidity).exp();
+        let shrink = big(1.0) / &growth;
+        let gamma = (growth.clone() + &shrink) / big(2.0);
+        let gamma_beta = (growth - &shrink) / big(2.0);
+        for exponent in -100..=0 {
+            for along in [-1.0, 1.0] {
+                let offset = DVec3::new(0.6, along * 10f64.powi(-exponent), -0.8);
+                let exact_offset = big_vector(offset);
+                let cosine = -exact_offset[1].clone() / oracle::length(&exact_offset);
+                let doppler = gamma.clone() + gamma_beta.clone() * &cosine;
+                let squares = gamma.clone() * &gamma
+                    + gamma_beta.clone() * &gamma_beta
+                    + big(2.0) * &gamma * &gamma_beta * &cosine
+                    + big(1.0);
+                let exact = larger_singular_value(&squares, &doppler);
+                let bound = map.stretch_bound(offset, 0.0);
+                assert!(big(bound) >= exact, "{rapidity}, {offset}: {bound}");
+                let size = small(&exact);
+                worst.record(
+                    oracle::error(bound, &exact),
+                    4.0 * RELATIVE * size,
+                    size,
+                    || format!("rapidity {rapidity}, offset {offset}"),
+                );
+            }
+        }
+    }
+    worst.check();
 }
 
 /// Along an axis the rapidity makes no difference: as far as the digits of the oracle go.

@@ -162,12 +162,40 @@ proptest! {
         let widest = rapidity.exp() * (1.0 + RELATIVE);
         prop_assert!(doppler <= widest && doppler * widest >= 1.0, "D = {doppler}");
         prop_assert!(map.jacobian(offset).is_finite());
+        let bound = map.stretch_bound(offset, normal.x);
+        prop_assert!(bound >= 1.0 && bound <= widest, "stretched by {bound}");
         for unit in [map.seen_normal(offset, normal), map.seen_tangent(offset, normal)] {
             let expected = if normal == DVec3::ZERO { 0.0 } else { 1.0 };
             // Where a vector is so small that it vanishes on the way, it stays zero.
             let vanished = unit == DVec3::ZERO && normal.abs().max_element() < 1e-150;
             prop_assert!(vanished || (unit.length() - expected).abs() <= RELATIVE, "{unit}");
         }
+    }
+
+    /// Two points of a ball, near its observer or around him, are never seen farther apart than its bound says.
+    #[test]
+    fn the_bound_of_the_stretching_contains_every_pair_of_points(
+        case in case(15.0, true),
+        part in prop_oneof![0.0..1.5f64, (-9.0..0.0f64).prop_map(|exponent| 10f64.powf(exponent))],
+        ends in [(direction(), 0.0..1.0f64), (direction(), 0.0..1.0f64)],
+    ) {
+        let radius = part * case.distance();
+        let bound = case.map().stretch_bound(case.offset, radius);
+        let [a, b] = ends.map(|(direction, out)| case.offset + direction * (out * radius));
+        let seen = case.map().seen_position(a).distance(case.map().seen_position(b));
+        let rounding: f64 = [a, b].map(|offset| Case { offset, ..case }.position_limit()).iter().sum();
+        prop_assert!(seen <= bound * a.distance(b) + rounding, "{seen}, bound {bound}, {a}, {b}");
+    }
+
+    /// A larger ball never has a smaller bound.
+    #[test]
+    fn the_bound_of_the_stretching_grows_with_the_ball(
+        case in case(MAX_RAPIDITY, true),
+        part in 0.0..1.2f64,
+        more in 0.0..0.5f64,
+    ) {
+        let bound = |part: f64| case.map().stretch_bound(case.offset, part * case.distance());
+        prop_assert!(bound(part) <= bound(part + more) * (1.0 + RELATIVE));
     }
 
     #[test]

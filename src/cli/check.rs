@@ -2,16 +2,18 @@
 
 use std::io::Write;
 
-use photosurface::Stage;
+use photosurface::{Precision, Stage, Wanted};
 
+use super::accuracy::AccuracyArgs;
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, grouped, print};
 
 /// Validate a scene or a mesh, and say what an export would make
 ///
-/// Reads everything that an export would read and prints, for every object, its parts and triangles and how
-/// fast it moves relative to the observer. Computes and writes nothing.
+/// Reads everything that an export would read and prints, for every object, its parts and triangles, how fast
+/// it moves relative to the observer, and about how many triangles its photosurfaces take, all steps together.
+/// Makes and writes nothing.
 #[derive(Debug, clap::Args)]
 pub(super) struct CheckArgs {
     #[command(flatten)]
@@ -19,28 +21,42 @@ pub(super) struct CheckArgs {
     #[command(flatten)]
     observer: ObserverArgs,
     #[command(flatten)]
+    accuracy: AccuracyArgs,
+    #[command(flatten)]
     verbosity: Verbosity,
 }
 
 pub(super) fn run(args: &CheckArgs) -> anyhow::Result<()> {
     let input = Input::read(&args.input, &args.observer, args.verbosity)?;
-    let stage = Stage::new(input.scene, input.models);
-    print(|out| table(&stage, out))
+    for (_, scene) in args.accuracy.levels(input.scene) {
+        let stage = Stage::new(scene, input.models.clone());
+        let wanted = args
+            .accuracy
+            .wanted(&stage, Precision::Single, args.verbosity);
+        print(|out| table(&stage, wanted, out))?;
+    }
+    Ok(())
 }
 
-fn table(stage: &Stage, out: &mut dyn Write) -> anyhow::Result<()> {
-    let steps = stage.scene().steps().len();
-    let (mut all_parts, mut all_vertices, mut all_triangles) = (0, 0, 0);
+fn table(stage: &Stage, wanted: Wanted, out: &mut dyn Write) -> anyhow::Result<()> {
+    let scene = stage.scene();
+    let steps = scene.steps().len();
+    let mut predicted = vec![0.0; scene.objects().len()];
+    for step in 0..steps {
+        for (sum, triangles) in predicted
+            .iter_mut()
+            .zip(stage.predicted_triangles(step, wanted))
+        {
+            *sum += triangles;
+        }
+    }
     writeln!(
         out,
-        "{:<20} {:>6} {:>12} {:>12} {:>14} {:>10}",
-        "object", "parts", "vertices", "triangles", "gamma", "rapidity"
+        "{:<20} {:>6} {:>12} {:>13} {:>10} {:>12} {:>16}",
+        "object", "parts", "triangles in", "gamma", "rapidity", "tolerance", "triangles out"
     )?;
-    for (object, parts) in stage.objects() {
-        let vertices: usize = parts
-            .iter()
-            .map(|(_, part)| part.mesh().positions().len())
-            .sum();
+    let mut parts_of_all = 0;
+    for ((object, parts), triangles_out) in stage.objects().zip(&predicted) {
         let triangles: usize = parts
             .iter()
             .map(|(_, part)| part.mesh().triangles().len())
@@ -48,26 +64,24 @@ fn table(stage: &Stage, out: &mut dyn Write) -> anyhow::Result<()> {
         let relative = stage.relative_velocity(object);
         writeln!(
             out,
-            "{:<20} {:>6} {:>12} {:>12} {:>14.6e} {:>10.6}",
+            "{:<20} {:>6} {:>12} {:>13.6e} {:>10.6} {:>12} {:>16}",
             object.name,
             parts.len(),
-            grouped(vertices),
             grouped(triangles),
             relative.gamma(),
-            relative.rapidity()
+            relative.rapidity(),
+            scene.tolerance(object).to_string(),
+            format!("about {}", grouped(triangles_out.round() as usize)),
         )?;
-        all_parts += parts.len();
-        all_vertices += vertices;
-        all_triangles += triangles;
+        parts_of_all += parts.len();
     }
     writeln!(
         out,
-        "{} step{}: {} photosurfaces, {} vertices, {} triangles",
+        "{} step{}: {} photosurfaces, about {} triangles",
         steps,
         if steps == 1 { "" } else { "s" },
-        grouped(all_parts * steps),
-        grouped(all_vertices * steps),
-        grouped(all_triangles * steps)
+        grouped(parts_of_all * steps),
+        grouped(predicted.iter().sum::<f64>().round() as usize)
     )?;
     Ok(())
 }

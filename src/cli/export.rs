@@ -9,10 +9,12 @@ use std::time::Instant;
 use anyhow::{Context, bail, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
 use photosurface::{
-    Export, Facts, Photosurface, Report, Stage, StageTime, Wanted, destination, step_label,
-    write_glb, write_gltf, write_ply, write_whole,
+    Export, Facts, Photosurface, Precision, Report, Scene, Stage, StageTime, Wanted, destination,
+    step_label, write_glb, write_gltf, write_ply, write_whole,
 };
 
+use super::Status;
+use super::accuracy::{AccuracyArgs, all_certified};
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, grouped, print};
@@ -32,6 +34,8 @@ pub(super) struct ExportArgs {
     input: InputArgs,
     #[command(flatten)]
     observer: ObserverArgs,
+    #[command(flatten)]
+    accuracy: AccuracyArgs,
     #[command(flatten)]
     output: OutputArgs,
     #[command(flatten)]
@@ -61,24 +65,79 @@ enum Format {
     Ply,
 }
 
-pub(super) fn run(args: &ExportArgs) -> anyhow::Result<()> {
+pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     let output = &args.output;
-    let verbosity = args.verbosity;
     let format = output.format()?;
-    output.check_streams()?;
+    output.check_streams(args.accuracy.level_count())?;
 
     let mut clock = Clock::default();
-    let input = Input::read(&args.input, &args.observer, verbosity)?;
+    let input = Input::read(&args.input, &args.observer, args.verbosity)?;
     let path = output.path(&input.name);
-    let files = output.files(&path, input.scene.steps().len());
-    check_destinations(&files, format, output.report.as_deref(), &input.files)?;
-    let stage = Stage::new(input.scene, input.models);
+    let steps = input.scene.steps().len();
+    let levels: Vec<Level> = args
+        .accuracy
+        .levels(input.scene)
+        .into_iter()
+        .map(|(suffix, scene)| Level {
+            scene,
+            files: output.files(&with_suffix(&path, &suffix), steps),
+            report: output
+                .report
+                .as_deref()
+                .map(|report| with_suffix(report, &suffix)),
+        })
+        .collect();
+    check_destinations(&levels, format, &input.files)?;
     clock.stop("read");
 
-    let progress = progress_bar(&stage, verbosity);
+    let mut status = Status::Done;
+    for level in levels {
+        let stage = Stage::new(level.scene, input.models.clone());
+        let clock = clock.clone();
+        let certified = export(
+            args,
+            format,
+            &stage,
+            &level.files,
+            level.report.as_deref(),
+            clock,
+        )?;
+        if !certified {
+            status = Status::NotCertified;
+        }
+    }
+    Ok(status)
+}
+
+/// One level of detail.
+struct Level {
+    scene: Scene,
+    /// One for each step, or one for all.
+    files: Vec<PathBuf>,
+    report: Option<PathBuf>,
+}
+
+/// Makes and writes the photosurfaces of a stage; whether all of them are certified.
+fn export(
+    args: &ExportArgs,
+    format: Format,
+    stage: &Stage,
+    files: &[PathBuf],
+    report: Option<&Path>,
+    mut clock: Clock,
+) -> anyhow::Result<bool> {
+    let verbosity = args.verbosity;
+    let precision = match format {
+        Format::Ply => Precision::Double,
+        Format::Glb | Format::Gltf => Precision::Single,
+    };
     let wanted = Wanted {
         doppler_factors: format == Format::Ply,
+        ..args.accuracy.wanted(stage, precision, verbosity)
     };
+    clock.stop("predict");
+
+    let progress = progress_bar(stage, verbosity);
     let steps = 0..stage.scene().steps().len();
     let mut made = Vec::new();
     let mut batch = Vec::new();
@@ -91,13 +150,13 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<()> {
         }
         clock.stop("photosurface");
         // A file for each step is written as soon as it can be, so that memory does not grow with them.
-        if output.split {
-            write_file(&files[step], format, &stage, &std::mem::take(&mut batch))?;
+        if args.output.split {
+            write_file(&files[step], format, stage, &std::mem::take(&mut batch))?;
             clock.stop("write");
         }
     }
-    if !output.split {
-        write_file(&path, format, &stage, &batch)?;
+    if !args.output.split {
+        write_file(&files[0], format, stage, &batch)?;
         clock.stop("write");
     }
     progress.finish_and_clear();
@@ -105,17 +164,28 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<()> {
     for (name, seconds) in &clock.stages {
         verbosity.detail(format_args!("{name}: {seconds:.3} s"));
     }
-    if !is_stdout(&path) {
-        verbosity.result(summary(&files, &made)?);
+    if !is_stdout(&files[0]) {
+        verbosity.result(summary(files, &made)?);
     }
-    if let Some(report) = &output.report {
+    let certified = all_certified(&made, verbosity);
+    if let Some(report) = report {
         let stages = clock
             .stages
             .into_iter()
             .map(|(name, seconds)| StageTime { name, seconds });
-        write_report(report, &stage, made, stages.collect())?;
+        write_report(report, stage, made, stages.collect())?;
     }
-    Ok(())
+    Ok(certified)
+}
+
+/// `out.glb` and `_lod0` make `out_lod0.glb`; a stream stays what it is.
+fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
+    if suffix.is_empty() || is_stdout(path) {
+        return path.to_owned();
+    }
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!("{stem}{suffix}.{extension}"))
 }
 
 impl OutputArgs {
@@ -141,13 +211,21 @@ impl OutputArgs {
     }
 
     /// Stdout holds one thing.
-    fn check_streams(&self) -> anyhow::Result<()> {
+    fn check_streams(&self, levels: usize) -> anyhow::Result<()> {
         let to_stdout = self.output.as_deref().is_some_and(is_stdout);
         ensure!(
             !(to_stdout && self.split),
             "--split writes several files, they cannot all go to stdout"
         );
+        ensure!(
+            !(to_stdout && levels > 1),
+            "--lod writes several files, they cannot all go to stdout"
+        );
         let report_to_stdout = self.report.as_deref().is_some_and(is_stdout);
+        ensure!(
+            !(report_to_stdout && levels > 1),
+            "--lod writes several reports, they cannot all go to stdout"
+        );
         ensure!(
             !(to_stdout && report_to_stdout),
             "-o and --report cannot both go to stdout"
@@ -179,27 +257,26 @@ impl OutputArgs {
 }
 
 /// Before any work: every file can be written, none is one of those that are read, and no two are one.
-fn check_destinations(
-    files: &[PathBuf],
-    format: Format,
-    report: Option<&Path>,
-    read: &[PathBuf],
-) -> anyhow::Result<()> {
+fn check_destinations(levels: &[Level], format: Format, read: &[PathBuf]) -> anyhow::Result<()> {
     let read: HashSet<_> = read
         .iter()
         .filter_map(|file| fs::canonicalize(file).ok())
         .collect();
-    let binaries = files
-        .iter()
-        .filter(|_| format == Format::Gltf)
-        .map(|file| binary_beside(file));
-    let report = report.map(Path::to_owned);
+    let outputs = |level: &Level| {
+        let binaries = level.files.iter().filter(|_| format == Format::Gltf);
+        let binaries = binaries.map(|file| binary_beside(file));
+        let all = level
+            .files
+            .iter()
+            .cloned()
+            .chain(binaries)
+            .chain(level.report.clone());
+        all.collect::<Vec<_>>()
+    };
     let mut written: HashMap<PathBuf, PathBuf> = HashMap::new();
-    for file in files
+    for file in levels
         .iter()
-        .cloned()
-        .chain(binaries)
-        .chain(report)
+        .flat_map(outputs)
         .filter(|file| !is_stdout(file))
     {
         let place = destination(&file)?;
@@ -328,6 +405,7 @@ fn is_stdout(path: &Path) -> bool {
 }
 
 /// Wall-clock time of each stage, those of one name added up.
+#[derive(Clone)]
 struct Clock {
     last: Instant,
     stages: Vec<(&'static str, f64)>,

@@ -1,5 +1,6 @@
 //! The command line: one file per command, and what they share.
 
+mod accuracy;
 mod args;
 mod check;
 mod example;
@@ -12,6 +13,18 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+/// How a command ended, if not with an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Status {
+    /// All that was asked for.
+    Done,
+    /// Written, but not proven to be within the tolerance.
+    NotCertified,
+}
+
+/// Exit status where something is not certified.
+const NOT_CERTIFIED: u8 = 1;
+
 /// Exit status of an error: nothing was written.
 const ERROR: u8 = 2;
 
@@ -23,7 +36,8 @@ const ERROR: u8 = 2;
 ///
 /// Units: the speed of light is 1; lengths and times share one unit. Coordinates are right-handed, y up.
 /// Results go to files, or to stdout with -o -; everything else goes to stderr.
-/// Exit status: 0 done, 2 an error, nothing written, 130 interrupted.
+/// Exit status: 0 done and certified, 1 written but not certified (budget reached, subdivision off), 2 an error,
+/// nothing written, 130 interrupted.
 #[derive(Debug, Parser)]
 #[command(name = "photosurface", version, max_term_width = 100)]
 struct Cli {
@@ -52,12 +66,13 @@ pub(crate) fn run() -> ExitCode {
     });
     let done = match cli.command {
         Command::Export(args) => export::run(&args),
-        Command::Check(args) => check::run(&args),
-        Command::Example(args) => example::run(&args),
-        Command::Schema(args) => schema::run(&args),
+        Command::Check(args) => check::run(&args).map(|()| Status::Done),
+        Command::Example(args) => example::run(&args).map(|()| Status::Done),
+        Command::Schema(args) => schema::run(&args).map(|()| Status::Done),
     };
     match done {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(Status::Done) => ExitCode::SUCCESS,
+        Ok(Status::NotCertified) => ExitCode::from(NOT_CERTIFIED),
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             messages::error(&error);

@@ -11,7 +11,9 @@
 //! Sources: Rau, Weiskopf, Ruder, *Special Relativity in Virtual Reality* (1998), sections 3.1 and 4.1
 //! (their Eq. (7) with the opposite sign of beta); Terrell, Phys. Rev. 116 (1959), 1041.
 
-use glam::{DMat3, DVec3};
+use std::f64::consts::FRAC_PI_2;
+
+use glam::{DMat3, DVec3, Vec3Swizzles};
 
 use crate::spacetime::{Velocity, unit};
 
@@ -140,6 +142,59 @@ impl PhotosurfaceMap {
         DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))
     }
 
+    /// A bound of how much the map stretches anything in the ball of `radius` about `offset_rest`: of the
+    /// largest singular value of [`PhotosurfaceMap::jacobian`] there, so also of
+    /// `|seen_position(a) - seen_position(b)| / |a - b|` for any two points of the ball.
+    ///
+    /// At least 1, which it is straight behind the observer, and at most `exp(eta)`, which it is straight ahead
+    /// and for balls that reach the observer.
+    ///
+    /// # Derivation
+    ///
+    /// Two singular values have the product `D`, the determinant, and the squares' sum `T` of the block
+    /// along and across the motion; the third is 1. At the angle `theta` from the direction of motion,
+    /// with `C = cos(theta/2)`, `S = sin(theta/2)` and `E = exp(eta)`,
+    ///
+    /// ```text
+    /// D = C^2 E + S^2 / E        T = C^2 E^2 + S^2 / E^2 + 1
+    /// T + 2 D = C^2 (E + 1)^2 + S^2 (1 + 1/E)^2
+    /// T - 2 D = C^2 (E - 1)^2 + S^2 (1 - 1/E)^2
+    /// ```
+    ///
+    /// and the larger one is half the sum of the roots of the last two, in which nothing cancels. Both grow
+    /// with `C`, so the place of the ball at the smallest angle, `theta - asin(radius / distance)`, has the
+    /// largest. A ball is convex, so that the mean value theorem holds on it.
+    ///
+    /// # Accuracy
+    ///
+    /// Rounded up, and by at most 40 epsilon where the motion is along an axis, at any rapidity. Else the
+    /// angle may be off by as much as a direction known to its last place allows, 16 epsilon, which counts only
+    /// close behind the observer (`tests/accuracy.rs`). NaN and negative radii get the bound
+    /// that holds everywhere.
+    pub fn stretch_bound(&self, offset_rest: DVec3, radius: f64) -> f64 {
+        let everywhere = self.stretch * (1.0 + 4.0 * f64::EPSILON);
+        let n = self.direction;
+        // Only ratios count; powers of two lose no digits.
+        let scale = harmless_scale(offset_rest);
+        let offset = offset_rest * scale;
+        // Two products and their difference round, and so has the offset itself as a difference.
+        let products = |a: DVec3, b: DVec3| (a.yzx() * b.zxy()).abs();
+        let rounding = products(n, offset) + products(offset, n);
+        let sideways = n.cross(offset).abs() + rounding * (2.0 * f64::EPSILON);
+        // Angles from straight behind, where the small ones are: no digits are lost there.
+        let from_behind = sideways.length().atan2(-n.dot(offset)) * (1.0 + 16.0 * f64::EPSILON);
+        let sine = radius * scale / offset.length() * (1.0 + 8.0 * f64::EPSILON);
+        let half_angle = 0.5 * (from_behind + sine.asin() * (1.0 + 4.0 * f64::EPSILON));
+        // Written so that NaN, also from a sine above 1, is refused.
+        if !(half_angle < FRAC_PI_2 && sine >= 0.0) {
+            return everywhere;
+        }
+        let (c, s) = half_angle.sin_cos();
+        let sum = (c * (self.stretch + 1.0)).hypot(s * (1.0 + self.squeeze));
+        let difference = (c * (self.stretch - 1.0)).hypot(s * (1.0 - self.squeeze));
+        (0.5 * (sum + difference) * (1.0 + 16.0 * f64::EPSILON)).min(everywhere)
+    }
+
     /// The unit normal of the photosurface where the surface at rest has the normal `normal_rest`.
     ///
     /// # Derivation
@@ -206,16 +261,21 @@ impl PhotosurfaceMap {
 
 /// The length of a vector, also where its square would overflow or lose digits.
 fn length(vector: DVec3) -> f64 {
-    let largest = vector.abs().max_element();
     // Powers of two lose no digits.
-    let scale = if largest > 1e140 {
+    let scale = harmless_scale(vector);
+    (vector * scale).length() / scale
+}
+
+/// A power of two that brings a vector to a length whose square is no trouble.
+fn harmless_scale(vector: DVec3) -> f64 {
+    let largest = vector.abs().max_element();
+    if largest > 1e140 {
         2f64.powi(-600)
     } else if largest < 1e-140 {
         2f64.powi(600)
     } else {
         1.0
-    };
-    (vector * scale).length() / scale
+    }
 }
 
 #[cfg(test)]
@@ -253,6 +313,41 @@ mod tests {
         let behind = map.seen_position(DVec3::new(0.0, 0.0, -5.0));
         assert_eq!(ahead, DVec3::new(0.0, 0.0, 5.0 * 2f64.exp()));
         assert_eq!(behind, DVec3::new(0.0, 0.0, -5.0 * (-2f64).exp()));
+    }
+
+    #[test]
+    fn stretching_is_known_ahead_behind_aside_and_around() {
+        for rapidity in [0.0, 1e-17, 1e-9, 0.7, 20.0, 350.0] {
+            for direction in [DVec3::X, DVec3::NEG_Y, DVec3::Z] {
+                let map = observer(rapidity, direction);
+                let all = rapidity.exp();
+                let aside = direction.any_orthonormal_vector();
+                for scale in [1e-310, 1e-200, 1.0, 1e150] {
+                    let near = |found: f64, expected: f64| {
+                        let case =
+                            format!("{rapidity} {direction} {scale}: {found}, not {expected}");
+                        assert!(found >= expected, "{case}");
+                        assert!(found <= expected * (1.0 + 40.0 * f64::EPSILON), "{case}");
+                    };
+                    near(map.stretch_bound(direction * scale, 0.0), all);
+                    near(map.stretch_bound(direction * -scale, 0.0), 1.0);
+                    near(map.stretch_bound(aside * scale, scale), all);
+                    near(map.stretch_bound(direction * -scale, 2.0 * scale), all);
+                }
+                for (offset, radius) in [
+                    (DVec3::ZERO, 0.0),
+                    (DVec3::NAN, 1.0),
+                    (-direction, f64::NAN),
+                    (-direction, -1.0),
+                    (-direction, f64::INFINITY),
+                ] {
+                    assert!(
+                        map.stretch_bound(offset, radius) >= all,
+                        "{offset} {radius}"
+                    );
+                }
+            }
+        }
     }
 
     #[test]

@@ -77,9 +77,21 @@ impl View {
         self.map.doppler_factor(self.offset(position_rest))
     }
 
+    /// A bound of how much anything in the ball of `radius` about `position_rest` is stretched: how much
+    /// farther apart, at most, two points of the ball are seen than they are at rest.
+    pub fn stretch_bound(&self, position_rest: DVec3, radius: f64) -> f64 {
+        // The rotation that follows the map stretches nothing.
+        self.map.stretch_bound(self.offset(position_rest), radius)
+    }
+
     /// The time, in the observer's frame, at which the light seen now left the point; not positive.
     pub fn emission_time(&self, position_rest: DVec3) -> f64 {
         self.map.emission_time(self.offset(position_rest))
+    }
+
+    /// How far away the point at `offset_rest` from the observer is seen.
+    pub(crate) fn seen_distance(&self, offset_rest: DVec3) -> f64 {
+        -self.map.emission_time(offset_rest)
     }
 
     fn offset(&self, position_rest: DVec3) -> DVec3 {

@@ -223,6 +223,31 @@ impl Mesh {
         self
     }
 
+    /// A mesh of data that is known to fit: indices in range, one value a vertex, all finite.
+    pub(crate) fn from_parts(
+        positions: Vec<DVec3>,
+        triangles: Vec<[u32; 3]>,
+        normals: Option<Vec<DVec3>>,
+        tangents: Option<Vec<DVec4>>,
+        texture_coordinates: Vec<Vec<Vec2>>,
+        colors: Option<Vec<Vec4>>,
+    ) -> Self {
+        debug_assert!(
+            triangles
+                .iter()
+                .flatten()
+                .all(|&index| (index as usize) < positions.len())
+        );
+        Self {
+            positions,
+            triangles: triangles.into(),
+            normals,
+            tangents,
+            texture_coordinates: texture_coordinates.into_iter().map(Into::into).collect(),
+            colors: colors.map(Into::into),
+        }
+    }
+
     /// The same mesh with other geometry; `positions` and the rest have one value a vertex, as before.
     pub(crate) fn with_geometry(
         &self,

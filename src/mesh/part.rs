@@ -48,6 +48,12 @@ impl Part {
         }
     }
 
+    /// The same part with other geometry, which has normals.
+    pub(crate) fn with_mesh(self, mesh: Mesh) -> Self {
+        debug_assert!(mesh.normals().is_some());
+        Self { mesh, ..self }
+    }
+
     /// The geometry.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh

@@ -5,9 +5,11 @@
 mod built_in;
 mod forms;
 mod json;
+mod tolerance;
 
 pub use built_in::{BUILT_IN_SCENES, BuiltInScene};
 pub use json::SceneError;
+pub use tolerance::{Tolerance, ToleranceError};
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -35,6 +37,7 @@ pub struct Scene {
     observer: Observer,
     objects: Vec<Object>,
     steps: Vec<f64>,
+    tolerance: Tolerance,
 }
 
 /// Who sees the scene.
@@ -74,6 +77,8 @@ pub struct Object {
     pub scale: DVec3,
     /// Its velocity in the scene frame.
     pub velocity: Velocity,
+    /// How far its photosurface may be from the true one, if not as far as the scene says.
+    pub tolerance: Option<Tolerance>,
 }
 
 /// Where the geometry of an object comes from.
@@ -155,6 +160,7 @@ impl Scene {
             observer,
             objects,
             steps: vec![0.0],
+            tolerance: Tolerance::default(),
         })
     }
 
@@ -179,6 +185,28 @@ impl Scene {
     pub fn with_observer(mut self, observer: Observer) -> Self {
         self.observer = observer;
         self
+    }
+
+    /// The scene with another tolerance, for all objects that have none of their own.
+    #[must_use]
+    pub fn with_tolerance(mut self, tolerance: Tolerance) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// The scene with this tolerance for all objects, whatever they had.
+    #[must_use]
+    pub fn with_tolerance_for_all(mut self, tolerance: Tolerance) -> Self {
+        self.tolerance = tolerance;
+        for object in &mut self.objects {
+            object.tolerance = None;
+        }
+        self
+    }
+
+    /// How far the photosurface of an object may be from the true one.
+    pub fn tolerance(&self, object: &Object) -> Tolerance {
+        object.tolerance.unwrap_or(self.tolerance)
     }
 
     /// The scene's title.
@@ -245,6 +273,7 @@ impl Object {
             rotation: DQuat::IDENTITY,
             scale: DVec3::ONE,
             velocity: Velocity::ZERO,
+            tolerance: None,
         }
     }
 
@@ -278,6 +307,9 @@ struct SceneFields {
     /// The observation event alone if absent.
     #[serde(default)]
     steps: Steps,
+    /// How far photosurfaces may be from the true ones; a thousandth of their diagonal if absent.
+    #[serde(default)]
+    tolerance: Tolerance,
 }
 
 impl TryFrom<SceneFields> for Scene {
@@ -287,6 +319,7 @@ impl TryFrom<SceneFields> for Scene {
         let scene = Self::new(fields.observer, fields.objects)?.with_steps(fields.steps.0)?;
         Ok(Self {
             title: fields.title,
+            tolerance: fields.tolerance,
             ..scene
         })
     }
@@ -321,6 +354,8 @@ struct ObjectFields {
     #[serde(default, deserialize_with = "forms::velocity")]
     #[schemars(with = "VelocityForm")]
     velocity: Velocity,
+    /// How far this object's photosurface may be from the true one; as far as the scene says if absent.
+    tolerance: Option<Tolerance>,
 }
 
 impl TryFrom<ObjectFields> for Object {
@@ -356,6 +391,7 @@ impl TryFrom<ObjectFields> for Object {
             rotation: fields.rotation,
             scale: fields.scale.0,
             velocity: fields.velocity,
+            tolerance: fields.tolerance,
         })
     }
 }

@@ -95,7 +95,7 @@ pub(crate) fn vector_error(value: DVec3, exact: &Vector) -> f64 {
     small(&length(&difference(&big_vector(value), exact)))
 }
 
-fn square_root(value: &Big) -> Big {
+pub(crate) fn square_root(value: &Big) -> Big {
     if *value == big(0.0) {
         return big(0.0);
     }

@@ -169,7 +169,7 @@ fn is_visible(node: &Node) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
+    use super::super::uri::Folder;
 
     use super::super::document::read_document;
     use super::*;
@@ -177,7 +177,7 @@ mod tests {
     fn read(rest: &str) -> Result<(Tree, Vec<Note>), ReadError> {
         let json = format!(r#"{{"asset": {{"version": "2.0"}}, {rest}}}"#);
         let mut notes = vec![];
-        let document = read_document(json.as_bytes(), Path::new("."), &mut notes)?;
+        let document = read_document(json.as_bytes(), &Folder::new(".".as_ref()), &mut notes)?;
         read_tree(&document, &mut notes).map(|tree| (tree, notes))
     }
 

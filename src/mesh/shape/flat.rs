@@ -13,9 +13,9 @@ use super::{Count, Length, ShapeError};
 pub struct Cuboid {
     /// Lengths along x, y and z, in the object's units before `scale`.
     pub size: [Length; 3],
-    /// Number of segments along each edge.
-    #[serde(default)]
-    pub resolution: Count<1, 32>,
+    /// Number of segments along each edge; 32 if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resolution: Option<Count<1, 32>>,
 }
 
 impl Cuboid {
@@ -23,7 +23,7 @@ impl Cuboid {
     pub(super) const CHECKER_CELLS: [u32; 2] = [8, 8];
 
     pub(super) fn surface(&self) -> Result<Surface, ShapeError> {
-        let segments = u64::from(self.resolution.get());
+        let segments = u64::from(self.resolution.unwrap_or_default().get());
         let mut surface = Surface::with_room_for(12 * segments * segments)?;
         let size = DVec3::from_array(self.size.map(Length::get));
         for side in Side::ALL {
@@ -42,9 +42,9 @@ pub struct Grid {
     pub size: Length,
     /// Number of checker cells along each edge.
     pub cells: Count<1, 1>,
-    /// Number of segments along the edge of a cell.
-    #[serde(default)]
-    pub resolution: Count<1, 8>,
+    /// Number of segments along the edge of a cell; 8 if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resolution: Option<Count<1, 8>>,
 }
 
 impl Grid {
@@ -53,7 +53,7 @@ impl Grid {
 
     pub(super) fn surface(&self) -> Result<Surface, ShapeError> {
         let cells = u64::from(self.cells.get());
-        let segments = cells * u64::from(self.resolution.get());
+        let segments = cells * u64::from(self.resolution.unwrap_or_default().get());
         let mut surface = Surface::with_room_for(2 * segments * segments)?;
         let size = DVec3::splat(self.size.get());
         let repeats = cells as f64 / 2.0;

@@ -39,9 +39,7 @@ pub(super) struct Ring {
 
 /// Turns a profile, all strips from top to bottom, about the y axis.
 pub(super) fn revolve(strips: &[Strip]) -> Result<Surface, ShapeError> {
-    let bands = strips.iter().flat_map(|strip| strip.rings.windows(2));
-    let mut surface =
-        Surface::with_room_for(bands.map(|band| band[0].segments + band[1].segments).sum())?;
+    let mut surface = Surface::with_room_for(triangle_count(strips))?;
     for Strip { chart, rings } in strips {
         let mut upper = Vec::new();
         for (k, ring) in rings.iter().enumerate() {
@@ -62,6 +60,12 @@ pub(super) fn revolve(strips: &[Strip]) -> Result<Surface, ShapeError> {
         }
     }
     Ok(surface)
+}
+
+/// Of how many triangles [`revolve`] makes the surface.
+pub(super) fn triangle_count(strips: &[Strip]) -> u64 {
+    let bands = strips.iter().flat_map(|strip| strip.rings.windows(2));
+    bands.map(|band| band[0].segments + band[1].segments).sum()
 }
 
 /// How many segments of the width that `around` of them have at the full `radius` make up `length`.

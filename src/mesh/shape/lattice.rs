@@ -19,7 +19,8 @@ pub struct Lattice {
     cells: Cells,
     spacing: Length,
     thickness: Length,
-    resolution: Count<1, 4>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) resolution: Option<Count<1, 4>>,
 }
 
 /// Square bars along the edges of cubic cells stacked about the origin.
@@ -32,9 +33,8 @@ struct LatticeFields {
     spacing: Length,
     /// Width of a bar, less than `spacing`, in the object's units before `scale`.
     thickness: Length,
-    /// Number of segments along a bar from crossing to crossing.
-    #[serde(default)]
-    resolution: Count<1, 4>,
+    /// Number of segments along a bar from crossing to crossing; 4 if absent.
+    resolution: Option<Count<1, 4>>,
 }
 
 impl TryFrom<LatticeFields> for Lattice {
@@ -54,7 +54,8 @@ impl Lattice {
     /// Columns and rows of the checker, which repeats; a cell is about as wide as a bar.
     pub(super) const CHECKER_CELLS: [u32; 2] = [2, 2];
 
-    /// Bars of `thickness` around `cells` cubes of edge `spacing`, each split into `resolution` segments.
+    /// Bars of `thickness` around `cells` cubes of edge `spacing`, each split into `resolution` segments,
+    /// 4 if there is none.
     ///
     /// # Errors
     ///
@@ -63,7 +64,7 @@ impl Lattice {
         cells: Cells,
         spacing: Length,
         thickness: Length,
-        resolution: Count<1, 4>,
+        resolution: Option<Count<1, 4>>,
     ) -> Result<Self, ShapeError> {
         if thickness >= spacing {
             return Err(ShapeError::NotLess {
@@ -99,7 +100,10 @@ impl Lattice {
     /// The same lattice with another number of segments along a bar.
     #[must_use]
     pub fn with_resolution(self, resolution: Count<1, 4>) -> Self {
-        Self { resolution, ..self }
+        Self {
+            resolution: Some(resolution),
+            ..self
+        }
     }
 
     pub(super) fn surface(&self) -> Result<Surface, ShapeError> {
@@ -107,7 +111,7 @@ impl Lattice {
         let mut lattice = Builder {
             surface: Surface::with_room_for(self.triangle_count())?,
             axes: cells.map(|cells| self.places_along(cells)),
-            segments: i64::from(self.resolution.get()),
+            segments: i64::from(self.resolution.unwrap_or_default().get()),
             origin: cells
                 .map(|cells| -self.spacing.get() * (f64::from(cells) / 2.0))
                 .into(),
@@ -130,7 +134,8 @@ impl Lattice {
         let [x, y, z] = self.cells.get().map(u64::from);
         let crossings = (x + 1) * (y + 1) * (z + 1);
         let bars = x * (y + 1) * (z + 1) + y * (x + 1) * (z + 1) + z * (x + 1) * (y + 1);
-        2 * (4 * u64::from(self.resolution.get()) * bars + 6 * crossings - 2 * bars)
+        2 * (4 * u64::from(self.resolution.unwrap_or_default().get()) * bars + 6 * crossings
+            - 2 * bars)
     }
 
     /// The places along one axis where crossings and segments begin and end, in ascending order.
@@ -140,7 +145,7 @@ impl Lattice {
         let mut places = vec![middle(0) - half, middle(0) + half];
         for i in 1..=cells {
             let [start, end] = [middle(i - 1) + half, middle(i) - half];
-            let segments = self.resolution.get();
+            let segments = self.resolution.unwrap_or_default().get();
             let between =
                 (1..segments).map(|k| start + (end - start) * f64::from(k) / f64::from(segments));
             places.extend(between.chain([end, middle(i) + half]));

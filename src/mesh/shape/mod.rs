@@ -6,6 +6,7 @@
 
 mod appearance;
 mod checker;
+mod deviation;
 mod error;
 mod flat;
 mod lathe;
@@ -33,6 +34,10 @@ use serde::{Deserialize, Serialize};
 use super::{Model, Part};
 
 /// A shape that the program makes itself, centred on the origin of its object.
+///
+/// Without a resolution of its own a shape has the default one of its kind. Round shapes take the
+/// one that a tolerance calls for from [`Shape::within`]; [`Shape::deviation`] says how far their facets
+/// are from the true surface.
 ///
 /// # Example
 ///
@@ -74,7 +79,7 @@ impl Shape {
     pub fn sphere(radius: f64) -> Result<Self, ShapeError> {
         Ok(Self::Sphere(Sphere {
             radius: Length::named("radius", radius)?,
-            resolution: Count::default(),
+            resolution: None,
         }))
     }
 
@@ -87,7 +92,7 @@ impl Shape {
         let length = |value| Length::named("size", value);
         Ok(Self::Cuboid(Cuboid {
             size: [length(x)?, length(y)?, length(z)?],
-            resolution: Count::default(),
+            resolution: None,
         }))
     }
 
@@ -100,7 +105,7 @@ impl Shape {
         Ok(Self::Cylinder(Cylinder {
             radius: Length::named("radius", radius)?,
             height: Length::named("height", height)?,
-            resolution: Count::default(),
+            resolution: None,
         }))
     }
 
@@ -113,7 +118,7 @@ impl Shape {
         Ok(Self::Cone(Cone {
             radius: Length::named("radius", radius)?,
             height: Length::named("height", height)?,
-            resolution: Count::default(),
+            resolution: None,
         }))
     }
 
@@ -125,7 +130,7 @@ impl Shape {
     pub fn torus(major_radius: f64, minor_radius: f64) -> Result<Self, ShapeError> {
         let major_radius = Length::named("major_radius", major_radius)?;
         let minor_radius = Length::named("minor_radius", minor_radius)?;
-        Torus::new(major_radius, minor_radius, Count::default()).map(Self::Torus)
+        Torus::new(major_radius, minor_radius, None).map(Self::Torus)
     }
 
     /// A rod of the default resolution.
@@ -137,7 +142,7 @@ impl Shape {
         Ok(Self::Rod(Rod {
             length: Length::named("length", length)?,
             radius: Length::named("radius", radius)?,
-            resolution: Count::default(),
+            resolution: None,
         }))
     }
 
@@ -150,7 +155,7 @@ impl Shape {
         Ok(Self::Grid(Grid {
             size: Length::named("size", size)?,
             cells: Count::named("cells", cells)?,
-            resolution: Count::default(),
+            resolution: None,
         }))
     }
 
@@ -164,7 +169,7 @@ impl Shape {
         let cells = Cells::Each([count(x)?, count(y)?, count(z)?]);
         let spacing = Length::named("spacing", spacing)?;
         let thickness = Length::named("thickness", thickness)?;
-        Lattice::new(cells, spacing, thickness, Count::default()).map(Self::Lattice)
+        Lattice::new(cells, spacing, thickness, None).map(Self::Lattice)
     }
 
     /// The same shape with another resolution; what it counts depends on the shape.
@@ -176,30 +181,30 @@ impl Shape {
         const NAME: &str = "resolution";
         Ok(match self {
             Self::Sphere(shape) => Self::Sphere(Sphere {
-                resolution: Count::named(NAME, resolution)?,
+                resolution: Some(Count::named(NAME, resolution)?),
                 ..shape
             }),
             Self::Cuboid(shape) => Self::Cuboid(Cuboid {
-                resolution: Count::named(NAME, resolution)?,
+                resolution: Some(Count::named(NAME, resolution)?),
                 ..shape
             }),
             Self::Cylinder(shape) => Self::Cylinder(Cylinder {
-                resolution: Count::named(NAME, resolution)?,
+                resolution: Some(Count::named(NAME, resolution)?),
                 ..shape
             }),
             Self::Cone(shape) => Self::Cone(Cone {
-                resolution: Count::named(NAME, resolution)?,
+                resolution: Some(Count::named(NAME, resolution)?),
                 ..shape
             }),
             Self::Torus(shape) => {
                 Self::Torus(shape.with_resolution(Count::named(NAME, resolution)?))
             }
             Self::Rod(shape) => Self::Rod(Rod {
-                resolution: Count::named(NAME, resolution)?,
+                resolution: Some(Count::named(NAME, resolution)?),
                 ..shape
             }),
             Self::Grid(shape) => Self::Grid(Grid {
-                resolution: Count::named(NAME, resolution)?,
+                resolution: Some(Count::named(NAME, resolution)?),
                 ..shape
             }),
             Self::Lattice(shape) => {

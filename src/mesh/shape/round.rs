@@ -22,8 +22,9 @@ pub struct Cylinder {
     /// Distance of the lids from each other, in the object's units before `scale`.
     pub height: Length,
     /// Number of segments around a full turn; along the height and on the lids they are as long.
-    #[serde(default)]
-    pub resolution: Count<3, 96>,
+    /// If absent it follows from the tolerance; 96 where there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resolution: Option<Count<3, 96>>,
 }
 
 impl Cylinder {
@@ -31,7 +32,11 @@ impl Cylinder {
     const COLUMNS: u32 = 24;
 
     pub(super) fn surface(&self) -> Result<Surface, ShapeError> {
-        let around = u64::from(self.resolution.get());
+        revolve(&self.profile())
+    }
+
+    pub(super) fn profile(&self) -> Vec<Strip> {
+        let around = u64::from(self.resolution.unwrap_or_default().get());
         cylinder(
             self.radius.get(),
             self.height.get(),
@@ -50,26 +55,26 @@ pub struct Rod {
     /// Distance of the side from the axis, in the object's units before `scale`.
     pub radius: Length,
     /// Number of segments around a full turn; along the rod they are as long, up to a length of 16
-    /// circumferences; a longer rod is cut into 16 times as many pieces as a turn.
-    #[serde(default)]
-    pub resolution: Count<3, 24>,
+    /// circumferences; a longer rod is cut into 16 times as many pieces as a turn. If absent it follows
+    /// from the tolerance; 24 where there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resolution: Option<Count<3, 24>>,
 }
 
 impl Rod {
     pub(super) fn surface(&self) -> Result<Surface, ShapeError> {
-        let around = u64::from(self.resolution.get());
+        revolve(&self.profile())
+    }
+
+    pub(super) fn profile(&self) -> Vec<Strip> {
+        let around = u64::from(self.resolution.unwrap_or_default().get());
         // Four cells around: more of them could not be told apart on something thin.
         cylinder(self.radius.get(), self.length.get(), around, [4, 2])
     }
 }
 
-/// A closed cylinder whose checker has so many cells around the side and across a lid.
-fn cylinder(
-    radius: f64,
-    height: f64,
-    around: u64,
-    [columns, across]: [u32; 2],
-) -> Result<Surface, ShapeError> {
+/// The profile of a closed cylinder whose checker has so many cells around the side and across a lid.
+fn cylinder(radius: f64, height: f64, around: u64, [columns, across]: [u32; 2]) -> Vec<Strip> {
     let bands = segments_along(height, radius, around);
     let rows = checker_rows(height, radius, columns);
     let side = (0..=bands).map(|k| Ring {
@@ -81,11 +86,11 @@ fn cylinder(
         segments: around,
     });
     let repeats = f64::from(across) / 2.0;
-    revolve(&[
+    vec![
         lid(radius, height / 2.0, true, around, repeats),
         around_the_axis(columns, side.collect()),
         lid(radius, -height / 2.0, false, around, repeats),
-    ])
+    ]
 }
 
 /// A closed cone about the y axis: its tip half the height above the origin, its lid as far below.
@@ -97,9 +102,10 @@ pub struct Cone {
     /// Distance of the tip from the lid, in the object's units before `scale`.
     pub height: Length,
     /// Number of segments around the rim; fewer and shorter ones towards the tip, so that all of them
-    /// are equally far inside the cone and about as long as wide.
-    #[serde(default)]
-    pub resolution: Count<3, 96>,
+    /// are equally far inside the cone and about as long as wide. If absent it follows from the
+    /// tolerance; 96 where there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resolution: Option<Count<3, 96>>,
 }
 
 impl Cone {
@@ -110,8 +116,13 @@ impl Cone {
     const FEWEST_SEGMENTS: u64 = 8;
 
     pub(super) fn surface(&self) -> Result<Surface, ShapeError> {
+        revolve(&self.profile())
+    }
+
+    /// The side from tip to rim, then the lid.
+    pub(super) fn profile(&self) -> Vec<Strip> {
         let [radius, height] = [self.radius.get(), self.height.get()];
-        let around = u64::from(self.resolution.get());
+        let around = u64::from(self.resolution.unwrap_or_default().get());
         let slant = radius.hypot(height);
         // Rings at radii like squares, with segments like their roots: then width and distance of the
         // rings go alike, and the chord of a segment is everywhere equally far from its arc.
@@ -132,10 +143,10 @@ impl Cone {
                 },
             }
         });
-        revolve(&[
+        vec![
             around_the_axis(Self::COLUMNS, side.collect()),
             lid(radius, -height / 2.0, false, around, 4.0),
-        ])
+        ]
     }
 }
 
@@ -145,7 +156,8 @@ impl Cone {
 pub struct Torus {
     major_radius: Length,
     minor_radius: Length,
-    resolution: Count<3, 96>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) resolution: Option<Count<3, 96>>,
 }
 
 /// A ring about the y axis.
@@ -156,9 +168,9 @@ struct TorusFields {
     major_radius: Length,
     /// Radius of the tube, less than `major_radius`, in the object's units before `scale`.
     minor_radius: Length,
-    /// Number of segments around the axis; around the tube they are about as long.
-    #[serde(default)]
-    resolution: Count<3, 96>,
+    /// Number of segments around the axis; around the tube they are about as long. If absent it
+    /// follows from the tolerance; 96 where there is none.
+    resolution: Option<Count<3, 96>>,
 }
 
 impl TryFrom<TorusFields> for Torus {
@@ -174,7 +186,7 @@ impl Torus {
     pub(super) const CHECKER_CELLS: [u32; 2] = [24, 8];
 
     /// A ring: distance of the middle of the tube from the axis, radius of the tube, and number of
-    /// segments around the axis.
+    /// segments around the axis, 96 if there is none.
     ///
     /// # Errors
     ///
@@ -182,7 +194,7 @@ impl Torus {
     pub fn new(
         major_radius: Length,
         minor_radius: Length,
-        resolution: Count<3, 96>,
+        resolution: Option<Count<3, 96>>,
     ) -> Result<Self, ShapeError> {
         if minor_radius >= major_radius {
             return Err(ShapeError::NotLess {
@@ -212,13 +224,22 @@ impl Torus {
     /// The same ring with another number of segments around the axis.
     #[must_use]
     pub fn with_resolution(self, resolution: Count<3, 96>) -> Self {
-        Self { resolution, ..self }
+        Self {
+            resolution: Some(resolution),
+            ..self
+        }
+    }
+
+    /// How many segments there are around the axis, and how many around the tube.
+    pub(super) fn segments(&self) -> [u64; 2] {
+        let around = u64::from(self.resolution.unwrap_or_default().get());
+        let tube = around as f64 * self.minor_radius.get() / self.major_radius.get();
+        [around, (tube.round() as u64).max(3)]
     }
 
     pub(super) fn surface(&self) -> Result<Surface, ShapeError> {
         let [major, minor] = [self.major_radius.get(), self.minor_radius.get()];
-        let around = u64::from(self.resolution.get());
-        let tube = ((around as f64 * minor / major).round() as u64).max(3);
+        let [around, tube] = self.segments();
         // From the innermost circle over the top: the texture runs down on the outside.
         let rings = (0..=tube).map(|k| {
             let (sin, cos) = sin_cos_of_turn(k, tube);

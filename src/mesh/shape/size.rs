@@ -68,7 +68,7 @@ impl JsonSchema for Length {
 }
 
 /// The largest [`Count`]. A full turn in as many segments is a tenth of a degree a segment.
-const MOST: u32 = 4096;
+pub(super) const MOST: u32 = 4096;
 
 /// A whole number from `LEAST` to 4096; `DEFAULT` where a field that may be absent is absent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -17,9 +17,10 @@ pub struct Sphere {
     /// Distance of the surface from the centre, in the object's units before `scale`.
     pub radius: Length,
     /// Number of segments around a full turn, on average: each face of an icosahedron is split so
-    /// that its edge, 63.43 degrees, has its share of them.
-    #[serde(default)]
-    pub resolution: Count<3, 96>,
+    /// that its edge, 63.43 degrees, has its share of them. If absent it follows from the tolerance;
+    /// 96 where there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resolution: Option<Count<3, 96>>,
 }
 
 /// The angle between neighbouring vertices of an icosahedron, `atan(2)`.
@@ -32,7 +33,7 @@ impl Sphere {
     pub(super) fn surface(&self) -> Result<Surface, ShapeError> {
         let splits = u64::from(self.splits());
         let mut sphere = Builder {
-            surface: Surface::with_room_for(20 * splits * splits)?,
+            surface: Surface::with_room_for(self.triangle_count())?,
             radius: self.radius.get(),
             known: HashMap::new(),
         };
@@ -42,9 +43,14 @@ impl Sphere {
         Ok(sphere.surface)
     }
 
+    pub(super) fn triangle_count(&self) -> u64 {
+        20 * u64::from(self.splits()).pow(2)
+    }
+
     /// Into how many parts each edge of the icosahedron is split.
-    fn splits(&self) -> u32 {
-        (f64::from(self.resolution.get()) * ICOSAHEDRON_EDGE_DEG / 360.0).ceil() as u32
+    pub(super) fn splits(&self) -> u32 {
+        (f64::from(self.resolution.unwrap_or_default().get()) * ICOSAHEDRON_EDGE_DEG / 360.0).ceil()
+            as u32
     }
 }
 
@@ -202,6 +208,6 @@ mod tests {
         let Shape::Sphere(sphere) = finest else {
             unreachable!()
         };
-        assert!(20 * u64::from(sphere.splits()).pow(2) <= MOST_TRIANGLES);
+        assert!(sphere.triangle_count() <= MOST_TRIANGLES);
     }
 }

@@ -1,0 +1,178 @@
+//! Flags that say how accurate the result is to be, and what that may cost.
+
+use anyhow::{Context, bail};
+use clap::Args;
+use photosurface::{Facts, Precision, Scene, Stage, Tolerance, Wanted};
+
+use super::messages::{Verbosity, grouped};
+
+/// Room for predictions: they are good to about a third.
+const PREDICTION_ROOM: f64 = 1.4;
+
+/// Of more steps than this a prediction looks at as many, evenly spread.
+const STEPS_LOOKED_AT: usize = 32;
+
+/// A budget below what is there before any refinement fits no tolerance.
+const MAX_LOOSENING: f64 = 1e12;
+
+/// How accurate the result is to be, and what that may cost.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Accuracy (overrides the scene)")]
+pub(super) struct AccuracyArgs {
+    /// How far a photosurface may be from the true one: 1e-3 (a fraction of its diagonal), abs:0.01 (a length in
+    /// scene units) or deg:0.02 (an angle seen by the observer, in degrees) [default: 1e-3]
+    #[arg(long, value_name = "T", value_parser = tolerance)]
+    tolerance: Option<Tolerance>,
+    /// Leave every vertex what it is; the certificate still tells how far off the mesh is
+    #[arg(long)]
+    no_subdivide: bool,
+    /// Most triangles of all photosurfaces together; if the tolerance needs more, the largest gaps are closed
+    /// first and the result is not certified
+    #[arg(long, value_name = "N", default_value_t = 20_000_000)]
+    max_triangles: u64,
+    /// Level of detail: a file for each of these tolerances, out_lod0.glb, out_lod1.glb, ...
+    #[arg(long, value_name = "T,T,...", value_delimiter = ',', value_parser = tolerance, conflicts_with = "tolerance")]
+    lod: Vec<Tolerance>,
+}
+
+impl AccuracyArgs {
+    /// The scene at each level of detail, with what to add to the names of files.
+    pub(super) fn levels(&self, scene: Scene) -> Vec<(String, Scene)> {
+        if !self.lod.is_empty() {
+            let level = |(level, tolerance): (usize, &Tolerance)| {
+                (
+                    format!("_lod{level}"),
+                    scene.clone().with_tolerance_for_all(*tolerance),
+                )
+            };
+            return self.lod.iter().enumerate().map(level).collect();
+        }
+        let scene = match self.tolerance {
+            Some(tolerance) => scene.with_tolerance_for_all(tolerance),
+            None => scene,
+        };
+        vec![(String::new(), scene)]
+    }
+
+    /// How many levels of detail there are.
+    pub(super) fn level_count(&self) -> usize {
+        self.lod.len().max(1)
+    }
+
+    /// What is wanted of the stage's photosurfaces, within the budget; tells what the tolerance takes.
+    pub(super) fn wanted(
+        &self,
+        stage: &Stage,
+        precision: Precision,
+        verbosity: Verbosity,
+    ) -> Wanted {
+        let wanted = Wanted {
+            subdivide: !self.no_subdivide,
+            precision,
+            ..Wanted::default()
+        };
+        let predicted = predicted_triangles(stage, wanted);
+        let needed = grouped(predicted.round() as usize);
+        verbosity.detail(format_args!("about {needed} triangles"));
+        let most = self.max_triangles as f64;
+        if !wanted.subdivide || PREDICTION_ROOM * predicted <= most {
+            return wanted;
+        }
+        // Triangles go with the inverse of the tolerance, but for those that are there anyway.
+        let mut loosening = PREDICTION_ROOM * predicted / most;
+        let loosened = |loosening| Wanted {
+            loosening,
+            ..wanted
+        };
+        while loosening < MAX_LOOSENING
+            && PREDICTION_ROOM * predicted_triangles(stage, loosened(loosening)) > most
+        {
+            loosening *= 1.5;
+        }
+        let scene = stage.scene();
+        let fitting = scene
+            .objects()
+            .iter()
+            .map(|object| scene.tolerance(object).times(loosening));
+        let mut fitting: Vec<_> = fitting.map(|tolerance| tolerance.to_string()).collect();
+        fitting.dedup();
+        verbosity.note(format_args!(
+            "the tolerance needs about {needed} triangles, more than --max-triangles {}; --tolerance {} would fit",
+            self.max_triangles,
+            fitting.join(", ")
+        ));
+        loosened(loosening)
+    }
+}
+
+/// About how many triangles all photosurfaces will have; of many steps only some are looked at.
+fn predicted_triangles(stage: &Stage, wanted: Wanted) -> f64 {
+    let steps = stage.scene().steps().len();
+    let looked_at = steps.min(STEPS_LOOKED_AT);
+    let at =
+        |index| stage.predicted_triangles(index * (steps - 1) / (looked_at - 1).max(1), wanted);
+    let sum: f64 = (0..looked_at)
+        .map(|index| at(index).iter().sum::<f64>())
+        .sum();
+    sum * steps as f64 / looked_at as f64
+}
+
+/// Says which photosurfaces are not certified; `true` if all are.
+pub(super) fn all_certified(made: &[Facts], verbosity: Verbosity) -> bool {
+    let open: Vec<_> = made
+        .iter()
+        .filter(|facts| !facts.certificate.complete)
+        .collect();
+    let excess = |facts: &Facts| facts.certificate.total / facts.certificate.tolerance;
+    let Some(worst) = open.iter().max_by(|a, b| excess(a).total_cmp(&excess(b))) else {
+        return true;
+    };
+    let certificate = &worst.certificate;
+    verbosity.note(format_args!(
+        "{} of {} photosurfaces are not within the tolerance; the worst is \"{}\", proven within {:.3e} where {:.3e} \
+         was asked for ({}: gap {:.3e}, curvature {:.3e}, rounding {:.3e})",
+        open.len(),
+        made.len(),
+        worst.name,
+        certificate.total,
+        certificate.tolerance,
+        certificate.unit,
+        certificate.gap,
+        certificate.curvature,
+        certificate.rounding,
+    ));
+    false
+}
+
+/// `1e-3`, `abs:0.01` or `deg:0.02`
+fn tolerance(text: &str) -> anyhow::Result<Tolerance> {
+    let number = |text: &str| -> anyhow::Result<f64> {
+        text.trim()
+            .parse()
+            .with_context(|| format!("\"{text}\" is no number"))
+    };
+    let tolerance = match text.split_once(':') {
+        None => Tolerance::Relative(number(text)?),
+        Some(("abs", length)) => Tolerance::Absolute(number(length)?),
+        Some(("deg", degrees)) => Tolerance::Angle(number(degrees)?),
+        Some((unit, _)) => bail!("unknown unit \"{unit}\", expected 1e-3, abs:0.01 or deg:0.02"),
+    };
+    Ok(tolerance.checked()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tolerances_are_read_in_their_three_units() {
+        assert_eq!(tolerance("1e-3").unwrap(), Tolerance::Relative(1e-3));
+        assert_eq!(tolerance("abs:0.5").unwrap(), Tolerance::Absolute(0.5));
+        assert_eq!(tolerance("deg:0.02").unwrap(), Tolerance::Angle(0.02));
+        for wrong in ["", "0", "-1", "inf", "nan", "rel:1", "deg:91", "abs:"] {
+            assert!(tolerance(wrong).is_err(), "{wrong}");
+        }
+        let shown = Tolerance::Angle(0.02).to_string();
+        assert_eq!(tolerance(&shown).unwrap(), Tolerance::Angle(0.02));
+    }
+}

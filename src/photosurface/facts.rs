@@ -1,0 +1,72 @@
+//! What is said of scenes and photosurfaces in files and in the report.
+
+use serde::Serialize;
+
+use crate::scene::Scene;
+use crate::tessellate::Certificate;
+
+/// What a photosurface is, in words and numbers: the same in files and in the report.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Facts {
+    /// Names it in files: unique there, ASCII letters, digits, `_` and `-` only.
+    pub name: String,
+    /// The object in the scene.
+    pub object: String,
+    /// The part of the object's model; empty where there is only one and it has no name.
+    pub part: String,
+    /// Which step, from 0.
+    pub step: usize,
+    /// Proper time of the observer at this step, from the observation event.
+    pub proper_time: f64,
+    /// Lorentz factor between object and observer.
+    pub relative_gamma: f64,
+    /// Rapidity between object and observer.
+    pub relative_rapidity: f64,
+    /// How many vertices it has.
+    pub vertices: usize,
+    /// How many triangles it has.
+    pub triangles: usize,
+    /// How far it is from the true photosurface.
+    pub certificate: Certificate,
+}
+
+/// What the scene is, in words and numbers: the same in files and in the report.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SceneFacts {
+    /// The scene's title.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
+    /// The program that made the file.
+    pub generator: &'static str,
+    /// Scene time of the observation event.
+    pub observer_time: f64,
+    /// Place of the observation event in the scene frame.
+    pub observer_position: [f64; 3],
+    /// Direction of the observer's motion in the scene frame.
+    pub observer_direction: [f64; 3],
+    /// The observer's speed in the scene frame.
+    pub observer_beta: f64,
+    /// The observer's Lorentz factor in the scene frame.
+    pub observer_gamma: f64,
+    /// The observer's rapidity in the scene frame.
+    pub observer_rapidity: f64,
+    /// Proper times of the steps, from the observation event.
+    pub steps: Vec<f64>,
+}
+
+impl SceneFacts {
+    pub(super) fn new(scene: &Scene) -> Self {
+        let observer = scene.observer();
+        Self {
+            title: scene.title().map(str::to_owned),
+            generator: concat!("photosurface ", env!("CARGO_PKG_VERSION")),
+            observer_time: observer.time,
+            observer_position: observer.position.to_array(),
+            observer_direction: observer.velocity.direction().to_array(),
+            observer_beta: observer.velocity.beta(),
+            observer_gamma: observer.velocity.gamma(),
+            observer_rapidity: observer.velocity.rapidity(),
+            steps: scene.steps().to_vec(),
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! How one object becomes photosurfaces at one step: what is allowed, what that takes, and the doing.
+
+use std::borrow::Cow;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::{Placed, Wanted, seen_mesh};
+use crate::light_cone::View;
+use crate::mesh::{Mesh, Part};
+use crate::scene::Tolerance;
+use crate::tessellate::{
+    Allowance, Bounds, Certificate, Counts, minimum_triangles, refine, rounding_bound, triangle_gap,
+};
+
+/// What part of the tolerance of a curved shape its facets may use; the rest is for the gap between them.
+///
+/// Facets small enough for the curvature have small gaps already: less would make more facets, more would
+/// leave the few near the observer too little.
+const CURVATURE_SHARE: f64 = 0.7;
+
+/// What is left of a tolerance for the gap, for the sums of its certificate.
+const ROOM: f64 = 0.999;
+
+/// Where an angle is the tolerance, no triangle is made smaller than this part of the mesh: where the observer
+/// touches a surface, any gap is seen under the same angle.
+const LEAST_OF_ANGLE: f64 = 1e-6;
+
+/// Refinement makes this many times as many triangles as theory asks for, about, and two more in every
+/// triangle that it divides.
+const TYPICAL_RATIO: f64 = 1.3;
+
+/// How one object is seen at one step, and what its tolerance allows.
+pub(super) struct Plan<'a> {
+    view: View,
+    tolerance: Tolerance,
+    /// The tolerance as a length; of an angle, at the nearest vertex.
+    length: f64,
+    /// In the object's rest frame, with names in files; those of a curved shape fine enough for the tolerance.
+    parts: Cow<'a, [(String, Part)]>,
+    /// Of facets from a curved surface, as seen; zero for what is flat.
+    curvature: f64,
+    /// For each part: the seen mesh without refinement, its rounding, and what is allowed.
+    drafts: Vec<Draft>,
+}
+
+struct Draft {
+    seen: Mesh,
+    /// What gap is left by curvature and rounding.
+    allowance: Allowance,
+    /// What gap the whole tolerance would allow.
+    whole: Allowance,
+}
+
+/// A part of the object, refined and seen.
+pub(super) struct Surface {
+    pub(super) name: String,
+    pub(super) part: Part,
+    pub(super) seen: Mesh,
+    pub(super) certificate: Certificate,
+}
+
+impl<'a> Plan<'a> {
+    pub(super) fn new(
+        placed: &'a Placed,
+        view: View,
+        tolerance: Tolerance,
+        wanted: Wanted,
+    ) -> Self {
+        let mut plan = Self {
+            view,
+            tolerance,
+            length: 0.0,
+            parts: Cow::Borrowed(&placed.parts),
+            curvature: 0.0,
+            drafts: vec![],
+        };
+        let seen: Vec<Mesh> = plan.seen_meshes();
+        let (center, radius) = ball(placed.parts.iter().map(|(_, part)| part.mesh()));
+        let stretch = view.stretch_bound(center, radius);
+        let aimed = tolerance.times(wanted.loosening);
+        plan.length = length_of(tolerance, &seen);
+        let aimed_length = length_of(aimed, &seen);
+
+        if let Some(shaped) = &placed.shaped {
+            let rounding = rounding_bound(
+                &view,
+                placed.parts[0].1.mesh(),
+                &seen[0],
+                stretch,
+                wanted.precision,
+            );
+            let target = CURVATURE_SHARE * (aimed_length - rounding).max(0.5 * aimed_length);
+            let per_deviation = stretch * shaped.largest_scale;
+            let shape = match wanted.subdivide {
+                true => shaped.shape.within(target / per_deviation),
+                false => shaped.shape.clone(),
+            };
+            plan.curvature = shape.deviation() * per_deviation;
+            if shape != shaped.shape {
+                plan.parts = Cow::Owned(shaped.parts_like(&shape, &placed.parts));
+            }
+        }
+        let seen = if plan.parts.len() == seen.len() && matches!(plan.parts, Cow::Borrowed(_)) {
+            seen
+        } else {
+            plan.seen_meshes()
+        };
+        let drafts = seen
+            .into_iter()
+            .zip(plan.parts.iter())
+            .map(|(seen, (_, part))| {
+                let rounding = rounding_bound(&view, part.mesh(), &seen, stretch, wanted.precision);
+                Draft {
+                    allowance: plan.allowance(
+                        aimed,
+                        aimed_length,
+                        plan.curvature + rounding,
+                        &seen,
+                    ),
+                    whole: plan.allowance(tolerance, plan.length, 0.0, &seen),
+                    seen,
+                }
+            });
+        plan.drafts = drafts.collect();
+        plan
+    }
+
+    /// About how many triangles the object will have.
+    pub(super) fn predicted_triangles(&self, subdivide: bool) -> f64 {
+        let observer = self.view.observer_rest();
+        let parts = self
+            .parts
+            .iter()
+            .zip(&self.drafts)
+            .map(|((_, part), draft)| {
+                let triangles = part.mesh().triangles();
+                if !subdivide {
+                    return triangles.len() as f64;
+                }
+                let predict = |corners: &[u32; 3]| {
+                    let offsets =
+                        corners.map(|corner| part.mesh().positions()[corner as usize] - observer);
+                    let allowed = draft.allowance.between(&offsets);
+                    if triangle_gap(offsets[0], offsets[1], offsets[2]) <= allowed {
+                        return 1.0;
+                    }
+                    2.0 + TYPICAL_RATIO * minimum_triangles(offsets, allowed)
+                };
+                triangles.par_iter().map(predict).sum::<f64>()
+            });
+        parts.sum()
+    }
+
+    /// Refines where that is wanted, maps, and proves.
+    pub(super) fn carry_out(self, wanted: Wanted) -> Vec<Surface> {
+        let observer = self.view.observer_rest();
+        let velocity = self.view.relative_velocity();
+        let drafts = self.parts.into_owned().into_iter().zip(self.drafts);
+        let surface = |((name, part), draft): ((String, Part), Draft)| {
+            let triangles_in = part.mesh().triangles().len();
+            let minimum = part.mesh().triangles().par_iter().map(|corners| {
+                let offsets =
+                    corners.map(|corner| part.mesh().positions()[corner as usize] - observer);
+                minimum_triangles(offsets, draft.whole.between(&offsets)).max(1.0)
+            });
+            let minimum_triangles = minimum.sum();
+            let (part, gap) = if wanted.subdivide && velocity.rapidity() > 0.0 {
+                let refined = refine(part.mesh(), observer, &draft.allowance);
+                (part.with_mesh(refined.mesh), refined.gap)
+            } else {
+                let gap = largest_gap(part.mesh(), observer);
+                (part, gap)
+            };
+            let seen = if part.mesh().positions().len() == draft.seen.positions().len() {
+                draft.seen
+            } else {
+                seen_mesh(&self.view, part.mesh())
+            };
+            let (center, radius) = ball([part.mesh()].into_iter());
+            let stretch = self.view.stretch_bound(center, radius);
+            let bounds = Bounds {
+                gap: velocity.gamma_beta() * gap * (1.0 + 4.0 * f64::EPSILON),
+                curvature: self.curvature,
+                rounding: rounding_bound(&self.view, part.mesh(), &seen, stretch, wanted.precision),
+            };
+            let counts = Counts {
+                triangles_in,
+                triangles_out: part.mesh().triangles().len(),
+                minimum_triangles,
+            };
+            let certificate = match self.tolerance {
+                Tolerance::Angle(degrees) => {
+                    Certificate::of_angles(degrees, &self.view, part.mesh(), bounds, counts)
+                }
+                _ => Certificate::of_lengths(self.length, bounds, counts),
+            };
+            Surface {
+                name,
+                part,
+                seen,
+                certificate,
+            }
+        };
+        drafts.map(surface).collect()
+    }
+
+    fn seen_meshes(&self) -> Vec<Mesh> {
+        self.parts
+            .iter()
+            .map(|(_, part)| seen_mesh(&self.view, part.mesh()))
+            .collect()
+    }
+
+    /// The gap `e` that a tolerance allows when `taken` of it is used for something else.
+    fn allowance(&self, tolerance: Tolerance, length: f64, taken: f64, seen: &Mesh) -> Allowance {
+        let velocity = self.view.relative_velocity();
+        let (gamma, gamma_beta) = (velocity.gamma(), velocity.gamma_beta());
+        match tolerance {
+            Tolerance::Angle(degrees) => {
+                // (gamma beta e + taken) / (distance - gamma e - taken) <= s, solved for e.
+                let s = degrees.to_radians().sin();
+                let share = ROOM / (gamma_beta + gamma * s);
+                let diagonal = seen.bounds().map_or(0.0, |(low, high)| low.distance(high));
+                Allowance::Angle {
+                    view: self.view,
+                    share: s * share,
+                    less: (1.0 + s) * taken * share,
+                    least: LEAST_OF_ANGLE * diagonal * s * share,
+                }
+            }
+            // Where more is taken than there is, the gap gets half of it all the same, and the certificate tells.
+            _ => Allowance::Everywhere(ROOM * (length - taken).max(0.5 * length) / gamma_beta),
+        }
+    }
+}
+
+/// A tolerance as a length; an angle at the nearest vertex.
+fn length_of(tolerance: Tolerance, seen: &[Mesh]) -> f64 {
+    match tolerance {
+        Tolerance::Absolute(length) => length,
+        Tolerance::Relative(fraction) => {
+            let bounds = seen.iter().filter_map(Mesh::bounds);
+            let all = bounds.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)));
+            fraction * all.map_or(0.0, |(low, high)| low.distance(high))
+        }
+        Tolerance::Angle(degrees) => {
+            let distances = seen
+                .iter()
+                .flat_map(Mesh::positions)
+                .map(|place| place.length());
+            degrees.to_radians().sin() * distances.fold(f64::INFINITY, f64::min)
+        }
+    }
+}
+
+/// A ball around meshes.
+fn ball<'m>(meshes: impl Iterator<Item = &'m Mesh>) -> (DVec3, f64) {
+    let bounds = meshes
+        .filter_map(Mesh::bounds)
+        .reduce(|(low, high), (l, h)| (low.min(l), high.max(h)));
+    let (low, high) = bounds.unwrap_or_default();
+    // Rounded up: the corners of the box are in it.
+    (
+        0.5 * low + 0.5 * high,
+        0.5 * low.distance(high) * (1.0 + 1e-12),
+    )
+}
+
+fn largest_gap(mesh: &Mesh, observer: DVec3) -> f64 {
+    let gaps = mesh.triangles().par_iter().map(|corners| {
+        let [a, b, c] = corners.map(|corner| mesh.positions()[corner as usize] - observer);
+        triangle_gap(a, b, c)
+    });
+    gaps.reduce(|| 0.0, f64::max)
+}

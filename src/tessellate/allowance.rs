@@ -1,0 +1,46 @@
+//! How large a gap may be, and where.
+
+use glam::DVec3;
+
+use crate::light_cone::View;
+
+/// The largest gap `e`, in the rest frame before the factor `gamma beta`, that an edge or a triangle may
+/// have.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Allowance {
+    /// The same everywhere.
+    Everywhere(f64),
+    /// As much as the observer sees under one angle.
+    ///
+    /// The distance at which a point is seen is `gamma (r + beta d_par)`, and on a flat triangle `r` is the
+    /// interpolated one minus `e`: it is at least the smallest at a corner minus `gamma e`. So what is allowed is
+    /// a `share` of the smallest, `less` what other errors take.
+    Angle {
+        /// Gives the distances.
+        view: View,
+        /// Of the smallest distance at a corner.
+        share: f64,
+        /// Taken by other errors.
+        less: f64,
+        /// Never less than this: where the observer touches a surface, every gap is seen under the same angle.
+        least: f64,
+    },
+}
+
+impl Allowance {
+    /// What is allowed for the edge or triangle between these offsets from the observer.
+    pub(crate) fn between(&self, offsets: &[DVec3]) -> f64 {
+        match self {
+            Self::Everywhere(gap) => *gap,
+            Self::Angle {
+                view,
+                share,
+                less,
+                least,
+            } => {
+                let distances = offsets.iter().map(|&offset| view.seen_distance(offset));
+                (distances.fold(f64::INFINITY, f64::min) * share - less).max(*least)
+            }
+        }
+    }
+}

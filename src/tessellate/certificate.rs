@@ -1,0 +1,185 @@
+//! The certificate: a proof of how far a mesh is from the true photosurface.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::triangle_gap;
+use crate::light_cone::View;
+use crate::mesh::Mesh;
+
+/// Room for the few roundings of a product of bounds.
+const UP: f64 = 1.0 + 8.0 * f64::EPSILON;
+
+/// How far a mesh is, at most, from the true photosurface.
+///
+/// Lengths are in the observer's frame; where the tolerance is an angle, `tolerance`, `gap`, `curvature`,
+/// `rounding` and `total` are angles seen by the observer, in degrees.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Certificate {
+    /// `length` or `degrees`.
+    pub unit: &'static str,
+    /// What was asked for.
+    pub tolerance: f64,
+    /// Proven: between the mapped flat triangles and the photosurface of the triangles at rest.
+    pub gap: f64,
+    /// Proven: between the photosurfaces of the triangles at rest and of the curved surface that they stand for.
+    pub curvature: f64,
+    /// Proven: by rounding, of the computation and of the numbers in the file.
+    pub rounding: f64,
+    /// Proven: the sum of the three.
+    pub total: f64,
+    /// Whether the total is within the tolerance.
+    pub complete: bool,
+    /// Triangles of the mesh at rest.
+    pub triangles_in: usize,
+    /// Triangles of the photosurface.
+    pub triangles_out: usize,
+    /// The fewest triangles, each inside one at rest, that theory allows for a gap as large as the tolerance.
+    pub minimum_triangles: f64,
+    /// `triangles_out / minimum_triangles`
+    pub ratio: f64,
+}
+
+/// How many digits the numbers of a file have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Precision {
+    /// `f32`, relative to an offset in the middle of the mesh: glTF.
+    #[default]
+    Single,
+    /// `f64`: PLY.
+    Double,
+}
+
+/// A bound of what rounding moves a vertex by, for every vertex of a mesh.
+///
+/// # Derivation
+///
+/// The place in the rest frame is off by a few units in the last place of the coordinates that it is computed
+/// from (the object's and the observer's place, the interpolation of new vertices): at most 8 epsilon of their
+/// size, which the map stretches by at most `stretch`. The map itself adds at most 16 epsilon of the place and
+/// what a direction known to its last place makes of it, 4 epsilon of `stretch r`. In a file with `f32` each
+/// coordinate relative to the offset, at most half the extent and a sixteenth of the largest extent, is
+/// rounded once.
+pub(crate) fn rounding_bound(
+    view: &View,
+    rest: &Mesh,
+    seen: &Mesh,
+    stretch: f64,
+    precision: Precision,
+) -> f64 {
+    let largest = |points: &[DVec3]| {
+        points
+            .iter()
+            .fold(0.0f64, |l, p| l.max(p.length_squared()))
+            .sqrt()
+    };
+    let size_rest = largest(rest.positions()) + view.observer_rest().length();
+    let size_seen = largest(seen.positions());
+    let double = f64::EPSILON * (16.0 * stretch * size_rest + 16.0 * size_seen);
+    match (precision, seen.bounds()) {
+        (Precision::Single, Some((low, high))) => {
+            let half = (0.5 * high - 0.5 * low).abs();
+            let largest_local = (half + half.max_element() / 16.0).length();
+            double + largest_local * (0.5 * f64::from(f32::EPSILON)) * 1.01
+        }
+        _ => double,
+    }
+}
+
+/// What a certificate adds up, as lengths in the observer's frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounds {
+    /// `gamma beta e`, the largest of the mesh.
+    pub(crate) gap: f64,
+    /// The distance of facets from a curved surface, stretched.
+    pub(crate) curvature: f64,
+    /// See [`rounding_bound`].
+    pub(crate) rounding: f64,
+}
+
+/// How many triangles there were, are, and have to be at least.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Counts {
+    pub(crate) triangles_in: usize,
+    pub(crate) triangles_out: usize,
+    pub(crate) minimum_triangles: f64,
+}
+
+impl Certificate {
+    /// With the tolerance and all bounds as lengths.
+    pub(crate) fn of_lengths(tolerance: f64, bounds: Bounds, counts: Counts) -> Self {
+        let total = bounds.gap + bounds.curvature + bounds.rounding;
+        Self::new(
+            "length",
+            tolerance,
+            [bounds.gap, bounds.curvature, bounds.rounding, total],
+            counts,
+        )
+    }
+
+    /// With the tolerance an angle seen by the observer, in degrees.
+    ///
+    /// A point displaced by a length is seen displaced by at most `asin(length / distance)`, the distance being
+    /// that of the nearer one: on a triangle at least the smallest of a corner minus `gamma e`, and what
+    /// curvature and rounding may take away.
+    pub(crate) fn of_angles(
+        degrees: f64,
+        view: &View,
+        rest: &Mesh,
+        bounds: Bounds,
+        counts: Counts,
+    ) -> Self {
+        let velocity = view.relative_velocity();
+        let (gamma, gamma_beta) = (velocity.gamma(), velocity.gamma_beta());
+        let sines = rest.triangles().par_iter().map(|corners| {
+            let positions = corners.map(|corner| rest.positions()[corner as usize]);
+            let [a, b, c] = positions.map(|position| position - view.observer_rest());
+            let e = triangle_gap(a, b, c);
+            let gap = gamma_beta * e * UP;
+            let distances = [a, b, c].map(|offset| view.seen_distance(offset));
+            let nearest = distances.into_iter().fold(f64::INFINITY, f64::min)
+                * (1.0 - 16.0 * f64::EPSILON)
+                - gamma * e * UP
+                - bounds.curvature
+                - bounds.rounding;
+            let sine = |length: f64| {
+                if length < nearest {
+                    length / nearest
+                } else {
+                    2.0
+                }
+            };
+            let total = gap + bounds.curvature + bounds.rounding;
+            [gap, bounds.curvature, bounds.rounding, total].map(sine)
+        });
+        let larger = |a: [f64; 4], b: [f64; 4]| [0, 1, 2, 3].map(|i| a[i].max(b[i]));
+        let sines = sines.reduce(|| [0.0; 4], larger);
+        let angle = |sine: f64| {
+            if sine <= 1.0 {
+                sine.asin().to_degrees() * UP
+            } else {
+                180.0
+            }
+        };
+        Self::new("degrees", degrees, sines.map(angle), counts)
+    }
+
+    fn new(unit: &'static str, tolerance: f64, bounds: [f64; 4], counts: Counts) -> Self {
+        let [gap, curvature, rounding, total] = bounds;
+        let total = total * UP;
+        Self {
+            unit,
+            tolerance,
+            gap,
+            curvature,
+            rounding,
+            total,
+            complete: total <= tolerance,
+            triangles_in: counts.triangles_in,
+            triangles_out: counts.triangles_out,
+            minimum_triangles: counts.minimum_triangles,
+            ratio: counts.triangles_out as f64 / counts.minimum_triangles,
+        }
+    }
+}

@@ -1,0 +1,578 @@
+//! One triangle refined: a Delaunay triangulation on the sky of an observer at rest.
+//!
+//! In the stereographic chart of the triangle's own plane, `w = q / (hypot(q, h) + h)` for the in-plane
+//! offset `q` from the foot of the perpendicular, circles of the sky are circles, so that a planar Delaunay
+//! triangulation there is the spherical one. The metric in which gaps are measured, `r` times that of the
+//! sky, is `4 h |dw|^2 / (1 - |w|^4)` in it.
+//!
+//! Points are added until no triangle's gap exceeds what is allowed. Which triangle comes first and where its
+//! point goes is what makes the mesh cheap: the one whose shortest edge is nearest to the ideal length, and
+//! the point that makes an equilateral triangle on that edge (P.-E. Bern's and A. Üngör's off-centres, in the
+//! order of an advancing front). Perfect triangles grow from perfect edges; flaws are left to the end.
+
+use std::collections::BinaryHeap;
+
+use glam::{DVec2, DVec3};
+use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
+use spade::{
+    ConstrainedDelaunayTriangulation, HasPosition, Point2, PositionInTriangulation, Triangulation,
+    mitigate_underflow,
+};
+
+use super::gap::triangle_gap_place;
+use super::{Allowance, triangle_gap};
+
+/// The gap that new triangles aim at, as a part of what is allowed: a little room for the last few, which
+/// have to fit between others.
+const AIM: f64 = 0.95;
+
+/// A point this near to an edge of the boundary, against the edge's length, would make a flat triangle.
+const TOO_NEAR: f64 = 0.225;
+
+/// How often the chart is flattened before the plain strip is taken.
+const CHARTS: u32 = 3;
+
+/// A point on the boundary of the triangle, or inside.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    /// Weights of the triangle's corners.
+    pub(super) weights: DVec3,
+    /// Offset from the observer.
+    pub(super) offset: DVec3,
+    /// Bit `i` for a point on the side from corner `i` to the next; corners have two.
+    pub(super) sides: u8,
+}
+
+/// What a triangle was divided into.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pieces {
+    /// Weights of the points inside; they follow those of the boundary.
+    pub(super) inside: Vec<DVec3>,
+    /// Triangles between the points of the boundary, in their order, and those inside.
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The largest gap of any of them.
+    pub(super) gap: f64,
+    /// Whether every gap is within what is allowed.
+    pub(super) complete: bool,
+}
+
+/// Divides the triangle between three positions, whose boundary is `boundary` (counter-clockwise, from corner 0
+/// on), until every gap is within the allowance or `most_points` have been added.
+pub(super) fn divide(
+    positions: [DVec3; 3],
+    observer: DVec3,
+    boundary: &[Corner],
+    allowance: &Allowance,
+    most_points: usize,
+) -> Pieces {
+    let Some(plane) = Plane::new(positions.map(|position| position - observer)) else {
+        return strip(boundary, allowance);
+    };
+    let smallest = boundary
+        .iter()
+        .fold(f64::INFINITY, |s, c| s.min(allowance.between(&[c.offset])));
+    // Where the observer is in the plane every direction lies on the horizon. Any chart gives a valid mesh.
+    let height = plane
+        .height
+        .max((2.0 * smallest * plane.nearest).sqrt())
+        .max(smallest);
+    for flattening in 0..CHARTS {
+        let chart = Chart {
+            plane,
+            height: height * 64f64.powi(flattening as i32),
+        };
+        let mut front = match Front::new(chart, positions, observer, boundary, allowance) {
+            Some(front) => front,
+            None => continue,
+        };
+        front.advance(most_points);
+        if let Some(pieces) = front.finish() {
+            return pieces;
+        }
+    }
+    strip(boundary, allowance)
+}
+
+/// The plane of a triangle, with coordinates from the point nearest to the observer.
+#[derive(Clone, Copy, Debug)]
+struct Plane {
+    x: DVec3,
+    y: DVec3,
+    /// Distance of the plane from the observer.
+    height: f64,
+    /// Distance of the triangle from the observer.
+    nearest: f64,
+    corners: [DVec2; 3],
+    /// Twice the area.
+    area: f64,
+}
+
+impl Plane {
+    /// `None` for a triangle without a plane.
+    fn new([a, b, c]: [DVec3; 3]) -> Option<Self> {
+        let x = (b - a).try_normalize()?;
+        let normal = (b - a).cross(c - a).try_normalize()?;
+        let y = normal.cross(x);
+        let corners = [a, b, c].map(|corner| DVec2::new(corner.dot(x), corner.dot(y)));
+        let area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]);
+        let longest = (b - a)
+            .length_squared()
+            .max((c - b).length_squared())
+            .max((a - c).length_squared());
+        let height = a.dot(normal).abs();
+        (area > 1e-13 * longest).then(|| Self {
+            x,
+            y,
+            height,
+            nearest: height.hypot(distance_from_origin(corners)),
+            corners,
+            area,
+        })
+    }
+
+    fn place(&self, offset: DVec3) -> DVec2 {
+        DVec2::new(offset.dot(self.x), offset.dot(self.y))
+    }
+
+    fn weights(&self, place: DVec2) -> DVec3 {
+        let [a, b, c] = self.corners;
+        let w1 = (place - a).perp_dot(c - a) / self.area;
+        let w2 = (b - a).perp_dot(place - a) / self.area;
+        DVec3::new(1.0 - w1 - w2, w1, w2)
+    }
+}
+
+/// The stereographic chart of a plane; for a height beyond that of the plane it is flatter than the sky.
+#[derive(Clone, Copy, Debug)]
+struct Chart {
+    plane: Plane,
+    height: f64,
+}
+
+impl Chart {
+    fn place_to_chart(&self, place: DVec2) -> DVec2 {
+        place / (place.length().hypot(self.height) + self.height)
+    }
+
+    fn chart_to_place(&self, w: DVec2) -> DVec2 {
+        w * (2.0 * self.height / (1.0 - w.length_squared()))
+    }
+
+    /// The square of the metric's factor: lengths in the chart times it are lengths in which a gap `e` is an
+    /// edge of `sqrt(8 e)`.
+    fn metric(&self, w: DVec2) -> f64 {
+        let square = w.length_squared();
+        4.0 * self.height / (1.0 - square * square).max(f64::EPSILON)
+    }
+}
+
+/// A vertex of the triangulation.
+#[derive(Clone, Copy, Debug)]
+struct Vertex {
+    chart: Point2<f64>,
+    corner: Corner,
+}
+
+impl HasPosition for Vertex {
+    type Scalar = f64;
+
+    fn position(&self) -> Point2<f64> {
+        self.chart
+    }
+}
+
+/// A face that has to be divided, as one number: the largest comes first, which is that of the least flaw.
+///
+/// Half a triangulation's time went into a queue of larger things.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Task(u64);
+
+impl Task {
+    fn new(flaw: f32, face: FixedFaceHandle<InnerTag>) -> Self {
+        // The bits of positive floats are in the order of the floats.
+        Self(u64::from(!flaw.to_bits()) << 32 | face.index() as u64)
+    }
+
+    fn flaw(self) -> f32 {
+        f32::from_bits(!((self.0 >> 32) as u32))
+    }
+
+    fn face_index(self) -> usize {
+        (self.0 & u64::from(u32::MAX)) as usize
+    }
+}
+
+/// A triangulation that grows.
+struct Front<'a> {
+    chart: Chart,
+    positions: [DVec3; 3],
+    observer: DVec3,
+    allowance: &'a Allowance,
+    triangulation: ConstrainedDelaunayTriangulation<Vertex>,
+    tasks: BinaryHeap<Task>,
+    /// For each face how far its shortest edge is from the ideal length; NaN where nothing is to do. Tasks that
+    /// say otherwise are out of date.
+    flaws: Vec<(f32, FixedFaceHandle<InnerTag>)>,
+    boundary: usize,
+}
+
+impl<'a> Front<'a> {
+    /// The triangulation of the boundary alone; `None` where rounding throws points of it together.
+    fn new(
+        chart: Chart,
+        positions: [DVec3; 3],
+        observer: DVec3,
+        boundary: &[Corner],
+        allowance: &'a Allowance,
+    ) -> Option<Self> {
+        let mut front = Self {
+            chart,
+            positions,
+            observer,
+            allowance,
+            triangulation: ConstrainedDelaunayTriangulation::new(),
+            tasks: BinaryHeap::new(),
+            flaws: vec![],
+            boundary: boundary.len(),
+        };
+        let mut handles = Vec::with_capacity(boundary.len());
+        for (index, &corner) in boundary.iter().enumerate() {
+            let w = chart.place_to_chart(chart.plane.place(corner.offset));
+            let handle = front.triangulation.insert(front.vertex(w, corner)).ok()?;
+            if handle.index() != index {
+                return None;
+            }
+            handles.push(handle);
+        }
+        for (index, &handle) in handles.iter().enumerate() {
+            let next = handles[(index + 1) % handles.len()];
+            if !front.triangulation.can_add_constraint(handle, next) {
+                return None;
+            }
+            front.triangulation.add_constraint(handle, next);
+        }
+        let faces: Vec<_> = front
+            .triangulation
+            .inner_faces()
+            .map(|face| face.fix())
+            .collect();
+        for face in faces {
+            front.consider(face);
+        }
+        Some(front)
+    }
+
+    fn vertex(&self, w: DVec2, corner: Corner) -> Vertex {
+        Vertex {
+            chart: mitigate_underflow(Point2::new(w.x, w.y)),
+            corner,
+        }
+    }
+
+    /// Adds points until nothing is left to do, or `most_points` have been added.
+    fn advance(&mut self, most_points: usize) {
+        let mut added = 0;
+        while added < most_points
+            && let Some(task) = self.tasks.pop()
+        {
+            let (flaw, face) = self.flaws[task.face_index()];
+            if flaw != task.flaw() {
+                continue;
+            }
+            let vertices = self.triangulation.face(face).vertices();
+            let hint = vertices[0].fix();
+            let Some((w, corner)) = self.new_point(vertices.map(|vertex| *vertex.data()), hint)
+            else {
+                continue;
+            };
+            let count = self.triangulation.num_vertices();
+            let vertex = self.vertex(w, corner);
+            let Ok(handle) = self.triangulation.insert_with_hint(vertex, hint) else {
+                continue;
+            };
+            if self.triangulation.num_vertices() == count {
+                continue;
+            }
+            added += 1;
+            let around = self.triangulation.vertex(handle).out_edges();
+            let faces: Vec<_> = around
+                .filter_map(|edge| edge.face().as_inner().map(|face| face.fix()))
+                .collect();
+            for face in faces {
+                self.consider(face);
+            }
+        }
+    }
+
+    /// Sets a task if the face has too large a gap.
+    fn consider(&mut self, face: FixedFaceHandle<InnerTag>) {
+        let flaw = self.flaw(face);
+        if self.flaws.len() <= face.index() {
+            self.flaws.resize(face.index() + 1, (f32::NAN, face));
+        }
+        self.flaws[face.index()] = (flaw.unwrap_or(f32::NAN), face);
+        if let Some(flaw) = flaw {
+            self.tasks.push(Task::new(flaw, face));
+        }
+    }
+
+    /// How far the shortest edge of a face with too large a gap is from the ideal length, as a ratio's logarithm.
+    fn flaw(&self, face: FixedFaceHandle<InnerTag>) -> Option<f32> {
+        let vertices = self.triangulation.face(face).vertices();
+        let corners = vertices.map(|vertex| vertex.data().corner);
+        if is_outside(&corners) {
+            return None;
+        }
+        let offsets = corners.map(|corner| corner.offset);
+        let allowed = self.allowance.between(&offsets);
+        if triangle_gap(offsets[0], offsets[1], offsets[2]) <= allowed {
+            return None;
+        }
+        let [a, b, c] = vertices.map(|vertex| to_vec(vertex.position()));
+        let shortest = (b - a)
+            .length_squared()
+            .min((c - b).length_squared())
+            .min((a - c).length_squared());
+        // An equilateral triangle with the circumradius R, R^2 / 2 the gap of its middle, has the side sqrt(3) R.
+        let ideal = 6.0 * AIM * allowed / self.chart.metric(a);
+        Some((shortest / ideal).ln().abs() as f32)
+    }
+
+    /// Where to add a point for a face: in front of its shortest edge, or else where its middle is.
+    fn new_point(&self, face: [Vertex; 3], hint: FixedVertexHandle) -> Option<(DVec2, Corner)> {
+        let w = self.ideal_point(face.map(|vertex| to_vec(vertex.chart)));
+        if w.length_squared() < 1.0 {
+            let weights = self.chart.plane.weights(self.chart.chart_to_place(w));
+            if weights.min_element() > 0.0 && self.has_room(w, hint) {
+                return Some((w, self.inner_corner(weights)));
+            }
+        }
+        // Next to the boundary: where the gap is largest is inside, for the gap of the boundary is not too large.
+        let [a, b, c] = face.map(|vertex| vertex.corner);
+        let [u, v, w] = triangle_gap_place(a.offset, b.offset, c.offset);
+        let weights = a.weights * u + b.weights * v + c.weights * w;
+        let corner = self.inner_corner(weights);
+        let w = self
+            .chart
+            .place_to_chart(self.chart.plane.place(corner.offset));
+        (weights.min_element() > 0.0).then_some((w, corner))
+    }
+
+    /// The point that makes an equilateral triangle of the ideal size on the shortest side of a
+    /// counter-clockwise triangle; its circumcentre if that is nearer.
+    fn ideal_point(&self, triangle: [DVec2; 3]) -> DVec2 {
+        let sides = [0, 1, 2].map(|i| (triangle[i], triangle[(i + 1) % 3], triangle[(i + 2) % 3]));
+        let length = |side: &(DVec2, DVec2, DVec2)| (side.1 - side.0).length_squared();
+        let &(a, b, c) =
+            sides.iter().fold(
+                &sides[0],
+                |s, side| if length(side) < length(s) { side } else { s },
+            );
+        let middle = (a + b) * 0.5;
+        let half = (b - a).length() * 0.5;
+        let inward = (b - a).perp() / (2.0 * half);
+        let center = circumcenter(a, b, c);
+        let to_center = (center - middle).dot(inward);
+
+        let allowed = self.allowance.between(&[self.offset_near(middle)]);
+        let height = |metric: f64| {
+            let radius = (2.0 * AIM * allowed / metric).sqrt();
+            if radius > half {
+                radius + (radius * radius - half * half).sqrt()
+            } else {
+                half
+            }
+        };
+        // Twice: the metric is that between the side and the point.
+        let metric = self.chart.metric(middle);
+        let apex = middle + inward * height(metric);
+        let metric = (metric * self.chart.metric(apex)).sqrt();
+        let height = height(metric);
+        if height < to_center {
+            middle + inward * height
+        } else {
+            center
+        }
+    }
+
+    /// Whether a point of the chart is in a face of the triangle, not too near to the boundary.
+    fn has_room(&self, w: DVec2, hint: FixedVertexHandle) -> bool {
+        match self
+            .triangulation
+            .locate_with_hint(Point2::new(w.x, w.y), hint)
+        {
+            PositionInTriangulation::OnFace(face) => {
+                let face = self.triangulation.face(face);
+                if is_outside(&face.vertices().map(|vertex| vertex.data().corner)) {
+                    return false;
+                }
+                face.adjacent_edges()
+                    .iter()
+                    .filter(|edge| edge.is_constraint_edge())
+                    .all(|edge| {
+                        let (a, b) = (to_vec(edge.from().position()), to_vec(edge.to().position()));
+                        // Height over length.
+                        (b - a).perp_dot(w - a).abs() > 2.0 * TOO_NEAR * (b - a).length_squared()
+                    })
+            }
+            PositionInTriangulation::OnEdge(edge) => {
+                !self.triangulation.directed_edge(edge).is_constraint_edge()
+            }
+            _ => false,
+        }
+    }
+
+    fn offset_near(&self, w: DVec2) -> DVec3 {
+        let weights = self.chart.plane.weights(self.chart.chart_to_place(w));
+        mix(self.positions, weights) - self.observer
+    }
+
+    fn inner_corner(&self, weights: DVec3) -> Corner {
+        Corner {
+            weights,
+            offset: mix(self.positions, weights) - self.observer,
+            sides: 0,
+        }
+    }
+
+    /// The triangles; `None` if one of them is turned over.
+    fn finish(self) -> Option<Pieces> {
+        let vertices = self.triangulation.vertices().skip(self.boundary);
+        let mut pieces = Pieces {
+            inside: vertices
+                .map(|vertex| vertex.data().corner.weights)
+                .collect(),
+            complete: true,
+            ..Pieces::default()
+        };
+        for face in self.triangulation.inner_faces() {
+            let vertices = face.vertices();
+            let corners = vertices.map(|vertex| vertex.data().corner);
+            if is_outside(&corners) {
+                continue;
+            }
+            let [a, b, c] = corners.map(|corner| DVec2::new(corner.weights.y, corner.weights.z));
+            if (b - a).perp_dot(c - a) <= 0.0 {
+                return None;
+            }
+            pieces.measure(&corners, self.allowance);
+            pieces
+                .triangles
+                .push(vertices.map(|vertex| vertex.index() as u32));
+        }
+        Some(pieces)
+    }
+}
+
+impl Pieces {
+    /// Takes the gap of one triangle into account.
+    fn measure(&mut self, corners: &[Corner; 3], allowance: &Allowance) {
+        let offsets = corners.map(|corner| corner.offset);
+        let gap = triangle_gap(offsets[0], offsets[1], offsets[2]);
+        self.gap = self.gap.max(gap);
+        self.complete &= gap <= allowance.between(&offsets);
+    }
+}
+
+/// A triangle so thin that it has no plane, or none that numbers can tell: its two long sides joined by a strip.
+fn strip(boundary: &[Corner], allowance: &Allowance) -> Pieces {
+    let side_length = |side: usize| {
+        let on = |corner: &&Corner| corner.sides >> side & 1 == 1 && corner.sides.count_ones() == 2;
+        let mut ends = boundary.iter().filter(on);
+        match (ends.next(), ends.next()) {
+            (Some(a), Some(b)) => a.offset.distance(b.offset),
+            _ => 0.0,
+        }
+    };
+    let longest = (0..3).fold(0, |l, side| {
+        if side_length(side) > side_length(l) {
+            side
+        } else {
+            l
+        }
+    });
+    // The boundary turned so that it begins with the longest side, which ends at the second of its corners.
+    let is_corner = |corner: &Corner| corner.sides.count_ones() == 2;
+    let starts_at = |corner: &Corner| is_corner(corner) && corner.weights[longest] == 1.0;
+    let start = boundary.iter().position(starts_at).unwrap_or(0);
+    let count = boundary.len();
+    let order: Vec<u32> = (0..count).map(|i| ((start + i) % count) as u32).collect();
+    let end = 1 + order[1..]
+        .iter()
+        .position(|&i| is_corner(&boundary[i as usize]))
+        .unwrap_or(0);
+    // Both from the start to the end of the longest side.
+    let lower = &order[..=end];
+    let upper: Vec<u32> = std::iter::once(order[0])
+        .chain(order[end..].iter().rev().copied())
+        .collect();
+
+    let along = boundary[order[end] as usize].offset - boundary[order[0] as usize].offset;
+    let parameter = |index: u32| boundary[index as usize].offset.dot(along);
+    let mut pieces = Pieces {
+        complete: true,
+        ..Pieces::default()
+    };
+    let (mut low, mut up) = (1, 1);
+    let mut add = |triangle: [u32; 3]| {
+        pieces.measure(&triangle.map(|index| boundary[index as usize]), allowance);
+        pieces.triangles.push(triangle);
+    };
+    add([lower[0], lower[1], upper[1]]);
+    while low + 1 < lower.len() || up + 1 < upper.len() {
+        let lower_next = lower.get(low + 1).filter(|_| low + 1 < lower.len());
+        let upper_next = upper.get(up + 1).filter(|_| up + 1 < upper.len());
+        let take_lower = match (lower_next, upper_next) {
+            (Some(&l), Some(&u)) => parameter(l) <= parameter(u),
+            (l, _) => l.is_some(),
+        };
+        if take_lower {
+            // Both chains end at the same corner; the last of them closes the strip.
+            if lower[low + 1] != upper[up] {
+                add([lower[low], lower[low + 1], upper[up]]);
+            }
+            low += 1;
+        } else {
+            if upper[up + 1] != lower[low] {
+                add([lower[low], upper[up + 1], upper[up]]);
+            }
+            up += 1;
+        }
+    }
+    pieces
+}
+
+/// Three points on one side of the triangle: a face between the side and its arc in the chart.
+fn is_outside(corners: &[Corner; 3]) -> bool {
+    corners[0].sides & corners[1].sides & corners[2].sides != 0
+}
+
+/// Distance of a counter-clockwise triangle from the origin; zero inside.
+fn distance_from_origin(corners: [DVec2; 3]) -> f64 {
+    let sides = [0, 1, 2].map(|i| (corners[i], corners[(i + 1) % 3]));
+    if sides.iter().all(|(a, b)| a.perp_dot(*b) >= 0.0) {
+        return 0.0;
+    }
+    let to_side = |(a, b): (DVec2, DVec2)| {
+        let parameter = (-a.dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+        (a + (b - a) * parameter).length()
+    };
+    sides.map(to_side).into_iter().fold(f64::INFINITY, f64::min)
+}
+
+fn mix([a, b, c]: [DVec3; 3], weights: DVec3) -> DVec3 {
+    a * weights.x + b * weights.y + c * weights.z
+}
+
+fn to_vec(point: Point2<f64>) -> DVec2 {
+    DVec2::new(point.x, point.y)
+}
+
+fn circumcenter(a: DVec2, b: DVec2, c: DVec2) -> DVec2 {
+    let (b, c) = (b - a, c - a);
+    let twice = 2.0 * b.perp_dot(c);
+    a + DVec2::new(
+        c.y * b.length_squared() - b.y * c.length_squared(),
+        b.x * c.length_squared() - c.x * b.length_squared(),
+    ) / twice
+}
