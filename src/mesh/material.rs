@@ -17,10 +17,20 @@ pub struct Material {
     pub metallic: f32,
     /// From 0, a mirror, to 1, matt.
     pub roughness: f32,
+    /// Multiplies metalness by its blue and roughness by its green.
+    pub metallic_roughness_texture: Option<Texture>,
     /// What the opacity means.
     pub alpha_mode: AlphaMode,
     /// Whether the back of the triangles is drawn.
     pub double_sided: bool,
+}
+
+impl Material {
+    /// All textures there are.
+    pub fn textures(&self) -> impl Iterator<Item = &Texture> {
+        let slots = [&self.base_color_texture, &self.metallic_roughness_texture];
+        slots.into_iter().flatten()
+    }
 }
 
 impl Default for Material {
@@ -32,6 +42,7 @@ impl Default for Material {
             base_color_texture: None,
             metallic: 1.0,
             roughness: 1.0,
+            metallic_roughness_texture: None,
             alpha_mode: AlphaMode::Opaque,
             double_sided: false,
         }

@@ -57,12 +57,21 @@ impl<'a> Materials<'a> {
             add_note(notes, note);
         }
         let base_color_texture = surface.base_color_texture.as_ref();
+        let gloss_texture = surface.metallic_roughness_texture.as_ref();
+        let metallic_roughness_texture = gloss_texture.and_then(|info| self.texture(info, notes));
+        // The factor is 1 where a texture says where the metal is; without it all would be metal, which is
+        // black wherever it has nothing to reflect.
+        let metallic = match gloss_texture.is_some() && metallic_roughness_texture.is_none() {
+            true => 0.0,
+            false => surface.metallic_factor.0.clamp(0.0, 1.0),
+        };
         Material {
             name: source.name.clone(),
             base_color: surface.base_color_factor.0.map(|c| c.clamp(0.0, 1.0)),
             base_color_texture: base_color_texture.and_then(|info| self.texture(info, notes)),
-            metallic: surface.metallic_factor.0.clamp(0.0, 1.0),
+            metallic,
             roughness: surface.roughness_factor.0.clamp(0.0, 1.0),
+            metallic_roughness_texture,
             alpha_mode: match source.alpha_mode.unwrap() {
                 json::material::AlphaMode::Opaque => AlphaMode::Opaque,
                 json::material::AlphaMode::Mask => {
@@ -183,18 +192,23 @@ fn read_sampler(sampler: &json::texture::Sampler) -> Sampler {
 /// The properties of a material that [`Material`] has no room for.
 fn properties_left(source: &json::Material) -> Vec<String> {
     let surface = &source.pbr_metallic_roughness;
-    let transformed = surface.base_color_texture.as_ref().is_some_and(|info| {
-        let extensions = info.extensions.as_ref();
+    let transformed = |info: &Option<json::texture::Info>| {
+        let extensions = info.as_ref().and_then(|info| info.extensions.as_ref());
         extensions.is_some_and(|extensions| extensions.texture_transform.is_some())
-    });
-    let texture = surface.metallic_roughness_texture.is_some();
+    };
     let known = [
-        ("metallicRoughnessTexture", texture),
         ("normalTexture", source.normal_texture.is_some()),
         ("occlusionTexture", source.occlusion_texture.is_some()),
         ("emissiveTexture", source.emissive_texture.is_some()),
         ("emissiveFactor", source.emissive_factor.0 != [0.0; 3]),
-        ("KHR_texture_transform of the baseColorTexture", transformed),
+        (
+            "KHR_texture_transform of the baseColorTexture",
+            transformed(&surface.base_color_texture),
+        ),
+        (
+            "KHR_texture_transform of the metallicRoughnessTexture",
+            transformed(&surface.metallic_roughness_texture),
+        ),
     ];
     let extensions = source.extensions.as_ref();
     let unlit = extensions.is_some_and(|extensions| extensions.unlit.is_some());

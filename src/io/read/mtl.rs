@@ -115,6 +115,7 @@ fn make_material(
         }),
         metallic: 0.0,
         roughness: source.shininess.map_or(0.9, roughness),
+        metallic_roughness_texture: None,
         alpha_mode: if opacity < 1.0 {
             AlphaMode::Blend
         } else {

@@ -102,7 +102,7 @@ pub enum Note {
         /// How many vertices.
         count: usize,
     },
-    /// What a material has beyond base colour, metalness, roughness, opacity and sidedness.
+    /// What a material has beyond base colour, metalness, roughness, their textures, opacity and sidedness.
     Material {
         /// Its name.
         material: String,

@@ -338,8 +338,9 @@ impl Document {
         if let Some(&index) = self.materials.get(&address) {
             return index;
         }
-        let texture = material.base_color_texture.as_ref();
-        let texture = texture.map(|texture| self.texture(texture));
+        let mut texture = |texture: &Option<Texture>| Some(self.texture(texture.as_ref()?));
+        let base_color_texture = texture(&material.base_color_texture);
+        let metallic_roughness_texture = texture(&material.metallic_roughness_texture);
         let (alpha_mode, alpha_cutoff) = match material.alpha_mode {
             AlphaMode::Opaque => (json::material::AlphaMode::Opaque, None),
             AlphaMode::Mask(cutoff) => (
@@ -355,7 +356,8 @@ impl Document {
             double_sided: material.double_sided,
             pbr_metallic_roughness: json::material::PbrMetallicRoughness {
                 base_color_factor: json::material::PbrBaseColorFactor(material.base_color),
-                base_color_texture: texture,
+                base_color_texture,
+                metallic_roughness_texture,
                 metallic_factor: json::material::StrengthFactor(material.metallic),
                 roughness_factor: json::material::StrengthFactor(material.roughness),
                 ..Default::default()
