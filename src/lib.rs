@@ -28,9 +28,10 @@ mod tessellate;
 pub use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec4};
 
 pub use io::{
-    AccessorProblem, DocumentProblem, Export, FileFindings, Findings, LoadError, NodeProblem, Note,
-    ObjProblem, ReadError, Report, StageTime, UriProblem, WriteError, abandon_writes, destination,
-    load_models, read_gltf_bytes, read_model, write_glb, write_gltf, write_ply, write_whole,
+    AccessorProblem, DocumentProblem, Export, FileFindings, Findings, Format, LoadError,
+    NodeProblem, Note, ObjProblem, ReadError, Report, StageTime, UriProblem, WriteError,
+    abandon_writes, destination, load_models, read_gltf_bytes, read_model, write_glb, write_gltf,
+    write_ply, write_whole,
 };
 pub use light_cone::{PhotosurfaceMap, View};
 pub use mesh::{

@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::command::Workplace;
+use common::command::{Workplace, glb_json};
+use serde_json::json;
 
 /// The header of a PNG, which is all of it that is looked at.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
@@ -111,4 +112,65 @@ fn an_interrupted_export_leaves_no_file_behind() {
             assert_eq!(bytes.len(), length as usize, "{file} is whole");
         }
     }
+}
+
+/// The texture that says where a surface is metal was left behind while its factor stayed 1: whole models
+/// became metal, which is black wherever it has nothing to reflect.
+#[test]
+fn a_texture_of_metal_travels_with_its_factors() {
+    let workplace = Workplace::new();
+    workplace.write(
+        "a.obj",
+        "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl red\nf 1/1 2/1 3/1\n",
+    );
+    workplace.write("a.mtl", "newmtl red\nmap_Kd red.png\n");
+    workplace.write("red.png", PNG);
+    workplace.write("metal.png", [PNG, b"another"].concat());
+    workplace.run("export a.obj -o a.gltf").success();
+    let mut source = workplace.read_json("a.gltf");
+    source["images"] = json!([{ "uri": "red.png" }, { "uri": "metal.png" }]);
+    source["textures"] = json!([{ "source": 0 }, { "source": 1 }]);
+    source["materials"][0]["pbrMetallicRoughness"] = json!({
+        "baseColorTexture": { "index": 0 },
+        "metallicRoughnessTexture": { "index": 1 },
+    });
+    workplace.write("source.gltf", source.to_string());
+    let run = workplace.run("export source.gltf -o out.glb").success();
+    assert!(!run.stderr.contains("note"), "{run}");
+    let seen = glb_json(&workplace.read("out.glb"));
+    let surface = &seen["materials"][0]["pbrMetallicRoughness"];
+    assert_eq!(surface["baseColorTexture"]["index"], 0);
+    assert_eq!(surface["metallicRoughnessTexture"]["index"], 1);
+    assert!(
+        surface["metallicFactor"]
+            .as_f64()
+            .is_none_or(|factor| factor == 1.0)
+    );
+    assert_eq!(seen["textures"][1]["source"], 1);
+
+    // Where it cannot be had, better no metal than all.
+    std::fs::remove_file(workplace.path("metal.png")).unwrap();
+    let run = workplace.run("export source.gltf -o out.glb").success();
+    assert!(run.stderr.contains("metal.png"), "{run}");
+    let seen = glb_json(&workplace.read("out.glb"));
+    assert_eq!(
+        seen["materials"][0]["pbrMetallicRoughness"]["metallicFactor"],
+        0.0
+    );
+}
+
+/// A hundred thousand steps were computed, and memory ran out, before the file was found too large.
+#[test]
+fn a_file_too_large_is_refused_before_it_is_computed() {
+    let workplace = Workplace::new();
+    workplace
+        .run("export --steps=-6..6/100000 -o out.glb")
+        .error(&[
+            "out.glb: the file would have at least",
+            "at most 4294967295",
+        ]);
+    let run = workplace.run("check --steps=-6..6/100000").success();
+    assert!(run.stdout_text().contains(" GB as .glb"), "{run}");
+    assert!(run.stderr.contains("at most 4294967295"), "{run}");
+    assert!(workplace.files().is_empty());
 }

@@ -9,15 +9,15 @@ use std::time::Instant;
 use anyhow::{Context, bail, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
 use photosurface::{
-    Export, Facts, Photosurface, Precision, Report, Scene, Stage, StageTime, Wanted, destination,
-    step_label, write_glb, write_gltf, write_ply, write_whole,
+    Export, Facts, Format, Photosurface, Precision, Report, Scene, Stage, StageTime, Wanted,
+    destination, step_label, write_glb, write_gltf, write_ply, write_whole,
 };
 
 use super::Status;
 use super::accuracy::{AccuracyArgs, all_certified};
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
-use super::messages::{Verbosity, grouped, print};
+use super::messages::{Verbosity, counted, print, size};
 
 /// Write photosurfaces as meshes
 ///
@@ -57,14 +57,6 @@ struct OutputArgs {
     report: Option<PathBuf>,
 }
 
-/// What a file's name says it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
-    Glb,
-    Gltf,
-    Ply,
-}
-
 pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     let output = &args.output;
     let format = output.format()?;
@@ -93,6 +85,9 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     let mut status = Status::Done;
     for level in levels {
         let stage = Stage::new(level.scene, input.models.clone());
+        format
+            .least_size(&stage, if output.split { 1 } else { steps })
+            .with_context(|| level.files[0].display().to_string())?;
         let clock = clock.clone();
         let certified = export(
             args,
@@ -165,7 +160,7 @@ fn export(
         verbosity.detail(format_args!("{name}: {seconds:.3} s"));
     }
     if !is_stdout(&files[0]) {
-        verbosity.result(summary(files, &made)?);
+        verbosity.result(summary(files, format, &made));
     }
     let certified = all_certified(&made, verbosity);
     if let Some(report) = report {
@@ -354,35 +349,35 @@ fn write_report(
     Ok(())
 }
 
-fn summary(files: &[PathBuf], made: &[Facts]) -> anyhow::Result<String> {
+fn summary(files: &[PathBuf], format: Format, made: &[Facts]) -> String {
     let triangles: usize = made.iter().map(|facts| facts.triangles).sum();
     let mut bytes = 0;
     for file in files {
-        bytes += fs::metadata(file)
-            .with_context(|| file.display().to_string())?
-            .len();
+        bytes += fs::metadata(file).map_or(0, |data| data.len());
+        if format == Format::Gltf {
+            bytes += fs::metadata(binary_beside(file)).map_or(0, |data| data.len());
+        }
     }
     let place = match files {
         [file] => file.display().to_string(),
         [first, .., last] => format!("{} to {}", first.display(), last.display()),
         [] => unreachable!("a scene has at least one step"),
     };
-    Ok(format!(
-        "{place}: {} photosurface{}, {} triangles, {:.1} MB",
-        grouped(made.len()),
-        if made.len() == 1 { "" } else { "s" },
-        grouped(triangles),
-        bytes as f64 / 1e6
-    ))
+    format!(
+        "{place}: {}, {}, {}",
+        counted(made.len(), "photosurface"),
+        counted(triangles, "triangle"),
+        size(bytes)
+    )
 }
 
 fn describe(facts: &Facts) -> String {
     format!(
-        "{}: proper time {}, gamma {:.6}, {} triangles",
+        "{}: proper time {}, gamma {:.6}, {}",
         facts.name,
         facts.proper_time,
         facts.relative_gamma,
-        grouped(facts.triangles)
+        counted(facts.triangles, "triangle")
     )
 }
 

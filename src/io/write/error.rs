@@ -31,7 +31,8 @@ pub enum WriteError {
     },
     /// More bytes than the format can say.
     #[error(
-        "the file would have {bytes} bytes, {format} can have at most {limit}; write the steps to files of their own"
+        "the file would have at least {bytes} bytes, {format} can have at most {limit}; write the steps to files \
+         of their own"
     )]
     TooLarge {
         /// Which format.

@@ -6,12 +6,14 @@ mod gltf;
 mod pack;
 mod ply;
 mod report;
+mod size;
 
 pub use error::WriteError;
 pub use file::{abandon_writes, destination, write_whole};
 pub use gltf::{write_glb, write_gltf};
 pub use ply::write_ply;
 pub use report::{Report, StageTime};
+pub use size::Format;
 
 use crate::mesh::Part;
 use crate::photosurface::{Photosurface, SceneFacts};

@@ -1,0 +1,155 @@
+//! How large a file will be, before anything is computed: what is too large is refused in good time.
+
+use std::collections::HashSet;
+
+use super::WriteError;
+use crate::mesh::{Mesh, Part};
+use crate::photosurface::Stage;
+use crate::scene::{Object, Source};
+
+/// A format that photosurfaces are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Binary glTF, one file.
+    Glb,
+    /// glTF as JSON with its data in a file beside it.
+    Gltf,
+    /// Binary PLY.
+    Ply,
+}
+
+impl Format {
+    /// How many bytes a file of `steps` steps of the stage has at least: its numbers and images, without the
+    /// words around them, which are few.
+    ///
+    /// # Errors
+    ///
+    /// The format cannot hold so many, whatever else there is in the file.
+    ///
+    /// # Accuracy
+    ///
+    /// Never more than the file will have: what would fit is not refused.
+    pub fn least_size(self, stage: &Stage, steps: usize) -> Result<u64, WriteError> {
+        // Shapes are made as fine as their tolerance asks for, which may be next to nothing.
+        let fixed = |object: &Object| !matches!(object.source, Source::Shape(..));
+        let parts: Vec<&Part> = stage
+            .objects()
+            .filter(|(object, _)| fixed(object))
+            .flat_map(|(_, parts)| parts.iter().map(|(_, part)| part))
+            .collect();
+        match self {
+            Self::Glb | Self::Gltf => {
+                let bytes = least_gltf(&parts, steps as u64);
+                let limit = u64::from(u32::MAX);
+                if self == Self::Glb && bytes > limit {
+                    return Err(WriteError::TooLarge {
+                        format: "GLB",
+                        bytes,
+                        limit,
+                    });
+                }
+                Ok(bytes)
+            }
+            Self::Ply => least_ply(&parts, steps as u64),
+        }
+    }
+}
+
+/// What differs from step to step is counted for each, what steps share once.
+fn least_gltf(parts: &[&Part], steps: u64) -> u64 {
+    let mut shared = HashSet::new();
+    let mut once = |address: usize, bytes: usize| match shared.insert(address) {
+        true => bytes as u64,
+        false => 0,
+    };
+    let mut bytes = 0;
+    for part in parts {
+        let mesh = part.mesh();
+        let of_vertex = 12 + mesh.normals().map_or(0, |_| 12) + mesh.tangents().map_or(0, |_| 16);
+        bytes += steps * of_vertex * mesh.positions().len() as u64;
+        bytes += once(
+            mesh.triangles().as_ptr() as usize,
+            size_of_val(mesh.triangles()),
+        );
+        for set in mesh.texture_coordinates() {
+            bytes += once(set.as_ptr() as usize, size_of_val(&set[..]));
+        }
+        if let Some(colors) = mesh.colors() {
+            bytes += once(colors.as_ptr() as usize, 4 * colors.len());
+        }
+        for texture in part
+            .material
+            .iter()
+            .flat_map(|material| material.textures())
+        {
+            bytes += once(
+                texture.image.bytes.as_ptr() as usize,
+                texture.image.bytes.len(),
+            );
+        }
+    }
+    bytes
+}
+
+fn least_ply(parts: &[&Part], steps: u64) -> Result<u64, WriteError> {
+    let count = |of: fn(&Mesh) -> usize| {
+        let each = parts.iter().map(|part| of(part.mesh()) as u64);
+        steps * each.sum::<u64>()
+    };
+    let vertices = count(|mesh| mesh.positions().len());
+    if vertices > u64::from(u32::MAX) {
+        return Err(WriteError::TooManyVertices(vertices as usize));
+    }
+    let color = match parts.iter().any(|part| part.mesh().colors().is_some()) {
+        true => 4,
+        false => 0,
+    };
+    // Three f64 and four f32 a vertex, a byte and three u32 a triangle.
+    Ok((40 + color) * vertices + 13 * count(|mesh| mesh.triangles().len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::{Export, load_models, write_glb, write_ply};
+    use crate::photosurface::Wanted;
+    use crate::scene::Scene;
+
+    #[test]
+    fn the_least_size_is_just_below_that_of_the_file() {
+        let scene = Scene::from_json(
+            r##"{ "objects": [
+                { "name": "a", "shape": { "sphere": { "radius": 1 } }, "checker": "#ffffff", "position": [0, 3, 0] },
+                { "name": "b", "shape": { "torus": { "major_radius": 2, "minor_radius": 1 } } } ],
+                "steps": [0, 1, 2] }"##,
+        )
+        .unwrap();
+        let (models, _) = load_models(&scene, "".as_ref()).unwrap();
+        let stage = Stage::new(scene, models);
+        let wanted = Wanted {
+            doppler_factors: true,
+        };
+        let photosurfaces: Vec<_> = (0..3)
+            .flat_map(|step| stage.photosurfaces(step, wanted))
+            .collect();
+        let export = Export {
+            scene: &stage.facts(),
+            marker: None,
+            photosurfaces: &photosurfaces,
+        };
+        let (mut glb, mut ply) = (vec![], vec![]);
+        write_glb(&export, &mut glb).unwrap();
+        write_ply(&export, &mut ply).unwrap();
+        for (format, file, words) in [(Format::Glb, glb, 12_000), (Format::Ply, ply, 500)] {
+            let least = format.least_size(&stage, 3).unwrap();
+            let rest = file.len() as u64 - least;
+            assert!(rest < words, "{format:?}: {rest} bytes more than {least}");
+        }
+        let [one, two] = [1, 2].map(|steps| Format::Glb.least_size(&stage, steps).unwrap());
+        let most = 1 + (u64::from(u32::MAX) - one) / (two - one);
+        assert!(Format::Glb.least_size(&stage, most as usize).is_ok());
+        assert!(Format::Glb.least_size(&stage, most as usize + 1).is_err());
+        assert!(Format::Gltf.least_size(&stage, 34_000).is_ok());
+        assert!(Format::Ply.least_size(&stage, 800_000).is_err());
+    }
+}
