@@ -542,6 +542,28 @@ fn check_says_what_an_export_would_make() {
 }
 
 #[test]
+fn counts_and_sizes_are_told_as_people_say_them() {
+    let workplace = Workplace::new();
+    workplace.write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let run = workplace.run("export one.obj -o one.gltf").success();
+    let bytes = workplace.read("one.gltf").len() + workplace.read("one.bin").len();
+    let summary = format!(
+        "one.gltf: 1 photosurface, 1 triangle, {:.1} kB\n",
+        bytes as f64 / 1e3
+    );
+    assert_eq!(run.stderr, summary, "{run}");
+    let run = workplace.run("check one.obj -q").success();
+    assert!(
+        run.stdout_text().ends_with(
+            "1 step: 1 photosurface, 3 vertices, 1 triangle, at least 84 bytes as .glb\n"
+        ),
+        "{run}"
+    );
+    let run = workplace.run("check one.obj -v").success();
+    assert!(run.stderr.contains("one: 3 vertices, 1 triangle"), "{run}");
+}
+
+#[test]
 fn the_schema_is_a_schema() {
     let workplace = Workplace::new();
     let run = workplace.run("schema").success();

@@ -2,12 +2,12 @@
 
 use std::io::Write;
 
-use photosurface::{Precision, Stage, Wanted};
+use photosurface::{Format, Precision, Stage, Wanted};
 
 use super::accuracy::AccuracyArgs;
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
-use super::messages::{Verbosity, grouped, print};
+use super::messages::{Verbosity, counted, grouped, print};
 
 /// Validate a scene or a mesh, and say what an export would make
 ///
@@ -22,17 +22,30 @@ pub(super) struct CheckArgs {
     observer: ObserverArgs,
     #[command(flatten)]
     accuracy: AccuracyArgs,
-    #[command(flatten)]
-    verbosity: Verbosity,
+    /// Print the table alone, without notes on what is read
+    #[arg(short, long, conflicts_with = "verbose", help_heading = "Messages")]
+    quiet: bool,
+    /// Say more: every part of every object
+    #[arg(short, long, help_heading = "Messages")]
+    verbose: bool,
 }
 
 pub(super) fn run(args: &CheckArgs) -> anyhow::Result<()> {
-    let input = Input::read(&args.input, &args.observer, args.verbosity)?;
+    let verbosity = Verbosity::new(args.quiet, args.verbose);
+    let input = Input::read(&args.input, &args.observer, verbosity)?;
     for (_, scene) in args.accuracy.levels(input.scene) {
         let stage = Stage::new(scene, input.models.clone());
-        let wanted = args
-            .accuracy
-            .wanted(&stage, Precision::Single, args.verbosity);
+        for (name, part) in stage.objects().flat_map(|(_, parts)| parts) {
+            verbosity.detail(format_args!(
+                "{name}: {}, {}",
+                counted(part.mesh().positions().len(), "vertex"),
+                counted(part.mesh().triangles().len(), "triangle")
+            ));
+        }
+        if let Err(error) = Format::Glb.least_size(&stage, stage.scene().steps().len()) {
+            verbosity.note(error);
+        }
+        let wanted = args.accuracy.wanted(&stage, Precision::Single, verbosity);
         print(|out| table(&stage, wanted, out))?;
     }
     Ok(())
@@ -77,11 +90,10 @@ fn table(stage: &Stage, wanted: Wanted, out: &mut dyn Write) -> anyhow::Result<(
     }
     writeln!(
         out,
-        "{} step{}: {} photosurfaces, about {} triangles",
-        steps,
-        if steps == 1 { "" } else { "s" },
-        grouped(parts_of_all * steps),
-        grouped(predicted.iter().sum::<f64>().round() as usize)
+        "{}: {}, about {}",
+        counted(steps, "step"),
+        counted(parts_of_all * steps, "photosurface"),
+        counted(predicted.iter().sum::<f64>().round() as usize, "triangle")
     )?;
     Ok(())
 }

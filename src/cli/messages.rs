@@ -18,6 +18,11 @@ pub(super) struct Verbosity {
 }
 
 impl Verbosity {
+    /// For a command that has words of its own for the two flags.
+    pub(super) fn new(quiet: bool, verbose: bool) -> Self {
+        Self { quiet, verbose }
+    }
+
     /// Whether progress and results are told at all.
     pub(super) fn is_quiet(self) -> bool {
         self.quiet
@@ -66,6 +71,28 @@ pub(super) fn print(
         .context("stdout")
 }
 
+/// Such as "1 triangle", "1,200 triangles", "2 vertices".
+pub(super) fn counted(count: usize, singular: &str) -> String {
+    let number = grouped(count);
+    match (count, singular) {
+        (1, _) => format!("{number} {singular}"),
+        (_, "vertex") => format!("{number} vertices"),
+        _ => format!("{number} {singular}s"),
+    }
+}
+
+/// A number of bytes as people read it, in powers of a thousand.
+pub(super) fn size(bytes: u64) -> String {
+    let bytes = bytes as f64;
+    // Below what would be printed as 1000.0 of the unit.
+    match bytes {
+        ..1e3 => format!("{bytes} bytes"),
+        ..999.95e3 => format!("{:.1} kB", bytes / 1e3),
+        ..999.95e6 => format!("{:.1} MB", bytes / 1e6),
+        _ => format!("{:.1} GB", bytes / 1e9),
+    }
+}
+
 /// A count with its thousands set off, as people read it.
 pub(super) fn grouped(count: usize) -> String {
     let digits = count.to_string();
@@ -81,6 +108,25 @@ pub(super) fn grouped(count: usize) -> String {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn sizes_and_counts_read_well() {
+        let sizes = [0, 999, 1000, 999_949, 999_950, 62_500_000, 4_294_967_296].map(super::size);
+        assert_eq!(
+            sizes,
+            [
+                "0 bytes",
+                "999 bytes",
+                "1.0 kB",
+                "999.9 kB",
+                "1.0 MB",
+                "62.5 MB",
+                "4.3 GB"
+            ]
+        );
+        assert_eq!(super::counted(1, "triangle"), "1 triangle");
+        assert_eq!(super::counted(2000, "vertex"), "2,000 vertices");
+    }
+
     #[test]
     fn thousands_are_set_off() {
         let texts: Vec<_> = [0, 999, 1000, 75730, 1234567].map(super::grouped).into();
