@@ -570,15 +570,59 @@ fn the_schema_is_a_schema() {
     let schema: Value = serde_json::from_slice(&run.stdout).unwrap();
     let validator = jsonschema::validator_for(&schema).unwrap();
     assert!(validator.is_valid(&serde_json::from_str(BALL).unwrap()));
-    for wrong in [
-        BALL.replace("radius", "raduis"),
-        BALL.replace("objects", "object"),
-        "[]".into(),
+    let ball = |from: &str, to: &str| {
+        assert!(BALL.contains(from), "{from}");
+        BALL.replace(from, to)
+    };
+    let shape = r#""shape": { "sphere": { "radius": 1, "resolution": 8 } }"#;
+    for right in [
+        ball("\"beta\": 0.6", "\"gamma\": 2"),
+        ball(
+            "\"beta\": 0.6, \"direction\": [1, 0, 0]",
+            "\"rapidity\": 350",
+        ),
+        ball(shape, "\"file\": \"a.glb\""),
+        ball(shape, &format!("{shape}, \"color\": \"#ffffff\"")),
+        ball("\"objects\"", "\"steps\": [1, 2], \"objects\""),
+        ball(
+            "\"objects\"",
+            "\"steps\": { \"from\": 0, \"to\": 1, \"count\": 2 }, \"objects\"",
+        ),
     ] {
-        assert!(
-            !validator.is_valid(&serde_json::from_str(&wrong).unwrap()),
-            "{wrong}"
-        );
+        assert!(photosurface::Scene::from_json(&right).is_ok(), "{right}");
+        let json = serde_json::from_str(&right).unwrap();
+        assert!(validator.is_valid(&json), "{right}");
+    }
+    for wrong in [
+        ball("radius", "raduis"),
+        ball("objects", "object"),
+        "[]".into(),
+        r#"{ "objects": [] }"#.into(),
+        ball("\"beta\": 0.6", "\"beta\": 0.6, \"gamma\": 2"),
+        ball("\"beta\": 0.6, ", ""),
+        ball("\"beta\": 0.6", "\"beta\": 1"),
+        ball("\"beta\": 0.6", "\"gamma\": 0.5"),
+        ball("\"beta\": 0.6", "\"rapidity\": 400"),
+        ball(shape, &format!("{shape}, \"file\": \"a.glb\"")),
+        ball(&format!("{shape}, "), ""),
+        ball(shape, "\"file\": \"\""),
+        ball(shape, "\"file\": \"a.glb\", \"color\": \"#ffffff\""),
+        ball(shape, "\"shape\": {}"),
+        ball("\"radius\": 1", "\"radius\": 0"),
+        ball("{ \"radius\": 1, \"resolution\": 8 }", "[1, 8]"),
+        ball("\"objects\"", "\"steps\": [], \"objects\""),
+        ball(
+            "\"objects\"",
+            "\"steps\": { \"from\": 0, \"to\": 1, \"count\": 0 }, \"objects\"",
+        ),
+    ] {
+        assert!(photosurface::Scene::from_json(&wrong).is_err(), "{wrong}");
+        let json = serde_json::from_str(&wrong).unwrap();
+        assert!(!validator.is_valid(&json), "{wrong}");
+    }
+    // Descriptions are for authors of scenes.
+    for word in ["```", "# Example", "photosurface::", "Error", "Rust"] {
+        assert!(!run.stdout_text().contains(word), "{word}");
     }
 }
 

@@ -1,6 +1,9 @@
 //! The scene file: JSON in, a scene or one error that names line, column and place out.
 
-use schemars::{Schema, schema_for};
+use schemars::Schema;
+use schemars::generate::SchemaSettings;
+use schemars::transform::RecursiveTransform;
+use serde_json::Value;
 use thiserror::Error;
 
 use super::Scene;
@@ -45,6 +48,8 @@ impl Scene {
     /// assert_eq!((error.line, error.at.as_str()), (1, "objects[0].shpe"));
     /// ```
     pub fn from_json(text: &str) -> Result<Self, SceneError> {
+        // Some editors mark text as UTF-8 with one character before it.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut deserializer = serde_json::Deserializer::from_str(text);
         let scene = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
             let at = error.path().to_string();
@@ -58,8 +63,69 @@ impl Scene {
 
     /// The JSON Schema of the scene file.
     pub fn json_schema() -> Schema {
-        schema_for!(Self)
+        SchemaSettings::draft2020_12()
+            .with_transform(RecursiveTransform(for_scene_authors))
+            .into_generator()
+            .into_root_schema_for::<Self>()
     }
+}
+
+/// Descriptions come from the documentation of Rust types: what is for programmers is left out.
+fn for_scene_authors(schema: &mut Schema) {
+    let Some(Value::String(description)) = schema.get_mut("description") else {
+        return;
+    };
+    // Sections such as "# Example" come last.
+    if let Some((before, _)) = description.split_once("\n\n# ") {
+        *description = before.to_owned();
+    }
+    *description = description.replace("[`", "`").replace("`]", "`");
+}
+
+/// What serde and serde_json say, and how it is called in a scene; longer phrases before what they contain.
+const IN_WORDS_OF_SCENES: &[(&str, &str)] = &[
+    ("EOF while parsing", "the text ends in the middle of"),
+    (
+        "expected ident",
+        "expected true, false, null, a number, a string, a list or an object",
+    ),
+    ("expected value", "expected a value"),
+    (
+        "trailing characters",
+        "more text after the end of the scene",
+    ),
+    ("invalid type: sequence", "found a list"),
+    ("invalid type: map", "found an object"),
+    ("invalid value: map", "found an empty object"),
+    ("invalid type: integer", "found"),
+    ("invalid type: floating point", "found"),
+    ("invalid type: ", "found "),
+    ("invalid value: integer", "found"),
+    ("invalid value: ", "found "),
+    ("invalid length", "found a list of length"),
+    (
+        "expected a sequence of 3 f64 values",
+        "expected a list of 3 numbers",
+    ),
+    ("expected an array of length", "expected a list of length"),
+    ("expected fewer elements in array", "expected fewer values"),
+    ("expected a sequence", "expected a list"),
+    ("expected f64", "expected a number"),
+    ("expected usize", "expected a whole number >= 0"),
+    ("missing field", "missing key"),
+    ("unknown field", "unknown key"),
+    ("duplicate field", "repeated key"),
+];
+
+fn in_words_of_scenes(message: &str) -> String {
+    let mut message = message.to_owned();
+    for (theirs, ours) in IN_WORDS_OF_SCENES {
+        if let Some(start) = message.find(theirs) {
+            // What a user wrote comes in quotes or backticks, behind the words that are replaced.
+            message.replace_range(start..start + theirs.len(), ours);
+        }
+    }
+    message
 }
 
 fn scene_error(json: &str, error: &serde_json::Error, at: &str) -> SceneError {
@@ -73,12 +139,14 @@ fn scene_error(json: &str, error: &serde_json::Error, at: &str) -> SceneError {
         line = read.lines().count();
         column = read.lines().last().map_or(0, str::len);
     }
+    // An empty text, or one that ends with a line, has no column there.
+    (line, column) = (line.max(1), column.max(1));
     SceneError {
         line,
         column,
         // "." is the whole scene, "?" a place inside a value that was never begun.
         at: at.trim_end_matches(['.', '?']).to_owned(),
-        message: text.strip_suffix(&suffix).unwrap_or(&text).to_owned(),
+        message: in_words_of_scenes(text.strip_suffix(&suffix).unwrap_or(&text)),
     }
 }
 
@@ -148,10 +216,23 @@ mod tests {
     #[test]
     fn mistakes_are_told_with_line_column_place_and_expectation() {
         // text, line, place, words of the message
-        let cases: [(String, usize, &str, &str); 18] = [
-            ("{".into(), 1, "", "EOF"),
-            ("[]".into(), 1, "", "expected struct SceneFields"),
-            (format!("{{ {OBJECTS} }} x"), 1, "", "trailing characters"),
+        let cases: [(String, usize, &str, &str); 30] = [
+            ("{".into(), 1, "", "the text ends in the middle of an object"),
+            ("".into(), 1, "", "the text ends"),
+            ("\u{feff}{".into(), 1, "", "the text ends"),
+            (r#"["t", [0, [0, 0, 0], [0, 0, 0], null]]"#.into(), 1, "", "found a list, expected a scene like {"),
+            (format!("{{ \"observer\": [0, [0, 0, 0], [0, 0, 0], null], {OBJECTS} }}"), 1, "observer", "found a list, expected an observer like {"),
+            (r#"{ "objects": [["a"]] }"#.into(), 1, "objects[0]", "expected an object like {"),
+            (r#"{ "objects": {} }"#.into(), 1, "objects", "found an object, expected a list"),
+            (r#"{ "objects": [ { "name": "a", "shape": { "sphere": [1, 24] } } ] }"#.into(), 1, "objects[0].shape.sphere", "found a list, expected a sphere like { \"radius\": 1 }"),
+            (r#"{ "objects": [ { "name": "a", "shape": "sphere" } ] }"#.into(), 1, "objects[0].shape", "found string \"sphere\", expected a shape like { \"sphere\": { \"radius\": 1 } }"),
+            (r#"{ "objects": [ { "name": "a", "shape": {} } ] }"#.into(), 1, "objects[0].shape", "found an empty object, expected a shape like"),
+            (r#"{ "objects": [ { "name": "a", "shape": { "sphere": { "radius": 1 }, "rod": {} } } ] }"#.into(), 1, "objects[0].shape", "both `sphere` and `rod`, expected exactly one shape"),
+            (r#"{ "objects": [ { "name": "a", "shape": { "ball": { "radius": 1 } } } ] }"#.into(), 1, "objects[0].shape", "unknown shape `ball`, expected one of sphere, box"),
+            (r#"{ "objects": [ { "name": "a", "file": "" } ] }"#.into(), 1, "objects[0].file", "the file name is empty"),
+
+            ("[]".into(), 1, "", "expected a scene like"),
+            (format!("{{ {OBJECTS} }} x"), 1, "", "more text after the end"),
             (r#"{ "objects": [] }"#.into(), 1, "", "at least one"),
             (
                 format!("{{\n \"observr\": {{}},\n {OBJECTS} }}"),
@@ -195,13 +276,13 @@ mod tests {
                 format!("{{ \"observer\": {{ \"position\": [1, 2] }}, {OBJECTS} }}"),
                 1,
                 "observer.position",
-                "3",
+                "found a list of length 2, expected a list of 3 numbers",
             ),
             (
                 format!("{{ \"observer\": {{ \"time\": \"now\" }}, {OBJECTS} }}"),
                 1,
                 "observer.time",
-                "expected f64",
+                "expected a number",
             ),
             (
                 format!("{{ \"observer\": {{ \"time\": 1e999 }}, {OBJECTS} }}"),

@@ -21,7 +21,7 @@ use thiserror::Error;
 
 use crate::mesh::{Appearance, Color, Length, Model, Shape};
 use crate::spacetime::{Event, Velocity, WorldLine};
-use forms::{Scale, Steps, VelocityForm};
+use forms::{FromObject, Scale, Steps, VelocityForm};
 
 /// Most evenly spaced steps one scene may have: a guard against slips of the pen.
 const MAX_STEPS: usize = 100_000;
@@ -30,7 +30,7 @@ const MAX_STEPS: usize = 100_000;
 ///
 /// Everything is given in the scene frame: c = 1, y up, lengths and times in one unit.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(try_from = "SceneFields")]
+#[serde(try_from = "FromObject<SceneFields>")]
 #[schemars(with = "SceneFields")]
 pub struct Scene {
     title: Option<String>,
@@ -62,7 +62,7 @@ pub struct Observer {
 /// Its origin is at `position` at scene time 0 and moves with `velocity`; `rotation` and `scale` act in
 /// its rest frame, whose axes are those of the scene under a pure boost.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(try_from = "ObjectFields")]
+#[serde(try_from = "FromObject<ObjectFields>")]
 #[schemars(with = "ObjectFields")]
 pub struct Object {
     /// Names the object in the output; unique in the scene.
@@ -299,9 +299,11 @@ struct SceneFields {
     /// What the scene shows, for people.
     title: Option<String>,
     /// Who sees the scene; at rest at the origin at time 0 if absent.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "forms::from_object")]
+    #[schemars(with = "Observer")]
     observer: Observer,
     /// What there is to see.
+    #[schemars(length(min = 1))]
     objects: Vec<Object>,
     /// Proper times of the observer after the observation event: a list, or `from`, `to` and `count`.
     /// The observation event alone if absent.
@@ -312,10 +314,10 @@ struct SceneFields {
     tolerance: Tolerance,
 }
 
-impl TryFrom<SceneFields> for Scene {
+impl TryFrom<FromObject<SceneFields>> for Scene {
     type Error = InvalidScene;
 
-    fn try_from(fields: SceneFields) -> Result<Self, InvalidScene> {
+    fn try_from(FromObject(fields): FromObject<SceneFields>) -> Result<Self, InvalidScene> {
         let scene = Self::new(fields.observer, fields.objects)?.with_steps(fields.steps.0)?;
         Ok(Self {
             title: fields.title,
@@ -328,12 +330,21 @@ impl TryFrom<SceneFields> for Scene {
 /// An object as a file writes it.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend(
+    "oneOf" = [{ "required": ["file"] }, { "required": ["shape"] }],
+    "dependentRequired" = { "color": ["shape"], "checker": ["shape"] },
+))]
 struct ObjectFields {
     /// Names the object in the output; unique in the scene.
+    #[schemars(length(min = 1))]
     name: String,
     /// A glTF, GLB or OBJ file, relative to the scene file. Either this or `shape`.
+    #[serde(default, deserialize_with = "forms::file")]
+    #[schemars(with = "String", length(min = 1))]
     file: Option<PathBuf>,
     /// A shape that the program makes itself. Either this or `file`.
+    #[serde(default, deserialize_with = "forms::shape")]
+    #[schemars(with = "Shape")]
     shape: Option<Shape>,
     /// Colour of a shape, "#rrggbb".
     color: Option<Color>,
@@ -358,10 +369,10 @@ struct ObjectFields {
     tolerance: Option<Tolerance>,
 }
 
-impl TryFrom<ObjectFields> for Object {
+impl TryFrom<FromObject<ObjectFields>> for Object {
     type Error = InvalidScene;
 
-    fn try_from(fields: ObjectFields) -> Result<Self, InvalidScene> {
+    fn try_from(FromObject(fields): FromObject<ObjectFields>) -> Result<Self, InvalidScene> {
         let name = fields.name;
         let source = match (fields.file, fields.shape) {
             (Some(file), None) => {
