@@ -14,7 +14,7 @@ use crate::scene::{Scene, Source};
 #[non_exhaustive]
 pub enum LoadError {
     /// Its file cannot be read.
-    #[error("object \"{object}\": {}", path.display())]
+    #[error("object \"{object}\"{}", in_file(path, source))]
     File {
         /// Which object.
         object: String,
@@ -31,6 +31,14 @@ pub enum LoadError {
         /// What is wrong with it.
         source: ShapeError,
     },
+}
+
+/// The name of the file, unless its error says it already.
+fn in_file(path: &Path, source: &ReadError) -> String {
+    match source {
+        ReadError::File { path: named, .. } if named == path => String::new(),
+        _ => format!(": {}", path.display()),
+    }
 }
 
 /// What there is to know about each of the files that objects name.

@@ -116,6 +116,20 @@ pub enum ReadError {
     /// An OBJ file that is wrong in another way.
     #[error("not as OBJ has it")]
     Obj(#[source] tobj::LoadError),
+    /// A vertex so far away that computing with it would overflow.
+    #[error(
+        "{coordinate:e} is a coordinate of vertex {vertex} of part {part:?}, expected at most {limit:e}"
+    )]
+    TooFar {
+        /// Which part.
+        part: String,
+        /// Which vertex, from 0.
+        vertex: usize,
+        /// Its largest coordinate.
+        coordinate: f64,
+        /// The limit.
+        limit: f64,
+    },
     /// Nothing that has a surface.
     #[error("no triangles, expected at least one; the file has {instead}")]
     NoTriangles {

@@ -16,7 +16,7 @@ use super::nodes::{self, Tree, node_name, read_tree};
 use super::note::{Note, add_note, plural};
 use super::primitive::{Source, read_primitive};
 use super::uri::Folder;
-use super::{Findings, NodeProblem, ReadError};
+use super::{Findings, NodeProblem, ReadError, checked};
 use crate::mesh::{Material, Mesh, Model, Part};
 
 /// A mesh in the coordinates of the scene.
@@ -64,7 +64,7 @@ pub fn read_gltf_bytes(bytes: &[u8], folder: &Path) -> Result<(Model, Findings),
         folder.mention(uri);
     }
     let files = folder.into_opened();
-    Ok((Model { parts }, Findings { notes, files }))
+    Ok((checked(Model { parts })?, Findings { notes, files }))
 }
 
 /// Notes what a file has that is no surface.

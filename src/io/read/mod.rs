@@ -28,6 +28,8 @@ pub use error::{AccessorProblem, DocumentProblem, NodeProblem, ObjProblem, ReadE
 pub use gltf_model::read_gltf_bytes;
 pub use note::Note;
 
+use glam::DVec3;
+
 use crate::mesh::Model;
 use obj::read_obj_bytes;
 use uri::read_file;
@@ -40,6 +42,26 @@ pub struct Findings {
     /// Every file that belongs to it: the file itself, its buffers, images and material libraries. One file
     /// may be named several times, and an image that is not there.
     pub files: Vec<PathBuf>,
+}
+
+/// The largest coordinate of a source: its square times the exponential of any rapidity is within `f64`.
+const FARTHEST: f64 = 1e75;
+
+/// The model, if nothing in it is so far away that computing with it would overflow.
+fn checked(model: Model) -> Result<Model, ReadError> {
+    for part in &model.parts {
+        let largest = |position: &DVec3| position.abs().max_element();
+        let positions = part.mesh().positions();
+        if let Some(vertex) = positions.iter().position(|p| largest(p) > FARTHEST) {
+            return Err(ReadError::TooFar {
+                part: part.name.clone(),
+                vertex,
+                coordinate: largest(&positions[vertex]),
+                limit: FARTHEST,
+            });
+        }
+    }
+    Ok(model)
 }
 
 /// Reads the model in a GLB, glTF or OBJ file, and says what of it was left out and which files were read.

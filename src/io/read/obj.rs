@@ -15,7 +15,7 @@ use super::note::{Note, add_note, plural};
 use super::obj_lines::{Prepared, prepare};
 use super::polygon::triangulate;
 use super::uri::Folder;
-use super::{Findings, ReadError};
+use super::{Findings, ReadError, checked};
 use crate::mesh::{Material, Mesh, MeshError, Model, Part};
 
 /// Reads the bytes of an OBJ file; libraries and textures are looked for in `folder`, and parts without a
@@ -61,11 +61,14 @@ pub(super) fn read_obj_bytes(
     }
     if parts.is_empty() {
         let skipped: String = notes.iter().map(|note| format!("; {note}")).collect();
-        let instead = format!("no faces{skipped}");
+        let instead = match prepared.empty_faces {
+            0 => format!("no faces{skipped}"),
+            _ => format!("none of three corners or more{skipped}"),
+        };
         return Err(ReadError::NoTriangles { instead });
     }
     let files = folder.into_opened();
-    Ok((Model { parts }, Findings { notes, files }))
+    Ok((checked(Model { parts })?, Findings { notes, files }))
 }
 
 fn note_other_content(prepared: &Prepared, notes: &mut Vec<Note>) {

@@ -15,7 +15,7 @@ pub enum WriteError {
     /// A number beyond the range of the file's `f32`.
     #[error(
         "{quantity} of vertex {vertex} of the photosurface \"{name}\" is {value:e}, beyond what 32-bit \
-         numbers of a file hold ({limit:e}); choose a smaller rapidity, or a smaller unit of length"
+         numbers of a file hold ({limit:e}); choose a smaller rapidity, or a larger unit of length"
     )]
     Range {
         /// Which photosurface.
@@ -27,6 +27,30 @@ pub enum WriteError {
         /// The number.
         value: f64,
         /// The limit that it is beyond.
+        limit: f64,
+    },
+    /// A vertex that is no number: the scene is too large, or too fast, to compute with.
+    #[error(
+        "vertex {vertex} of the photosurface \"{name}\" overflows 64-bit numbers: lengths, times \
+         or the rapidity are too large"
+    )]
+    Overflow {
+        /// Which photosurface.
+        name: String,
+        /// Which vertex, from 0.
+        vertex: usize,
+    },
+    /// An extent that vanishes in the file's `f32`.
+    #[error(
+        "the photosurface \"{name}\" is only {extent:e} across, too small for the 32-bit numbers of a file \
+         ({limit:e}); scale the scene up, so that it has larger numbers"
+    )]
+    TooSmall {
+        /// Which photosurface.
+        name: String,
+        /// Its largest extent along an axis.
+        extent: f64,
+        /// The least that can be written.
         limit: f64,
     },
     /// More bytes than the format can say.

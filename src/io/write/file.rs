@@ -206,6 +206,14 @@ fn fill<F: Write>(
 }
 
 fn io_error(path: &Path, source: std::io::Error) -> WriteError {
+    // tempfile names its file behind what the system says; nobody else knows that file.
+    let text = source.to_string();
+    let source = match text.split_once(" at path ") {
+        Some((said, _)) if source.get_ref().is_some() => {
+            std::io::Error::new(source.kind(), said.to_owned())
+        }
+        _ => source,
+    };
     WriteError::Io {
         path: path.to_owned(),
         source,

@@ -42,6 +42,10 @@ pub(super) fn pack(name: &str, positions: &[DVec3]) -> Result<Packed, WriteError
     let too_large = |p: &DVec3| !(p.abs().max_element() <= f64::from(f32::MAX));
     if let Some(vertex) = positions.iter().position(too_large) {
         let largest = positions[vertex].abs().max_element();
+        if !positions[vertex].is_finite() {
+            let name = name.to_owned();
+            return Err(WriteError::Overflow { name, vertex });
+        }
         return Err(range_error(vertex, largest, f32::MAX));
     }
 
@@ -50,7 +54,11 @@ pub(super) fn pack(name: &str, positions: &[DVec3]) -> Result<Packed, WriteError
         .fold((first, first), |(l, h), &p| (l.min(p), h.max(p)));
     let half_extent = (0.5 * high - 0.5 * low).max_element();
     if half_extent > 0.0 && half_extent < f64::from(f32::MIN_POSITIVE) {
-        return Err(range_error(0, half_extent, f32::MIN_POSITIVE));
+        return Err(WriteError::TooSmall {
+            name: name.to_owned(),
+            extent: 2.0 * half_extent,
+            limit: 2.0 * f64::from(f32::MIN_POSITIVE),
+        });
     }
     let offset = rounded_to_eighths(0.5 * low + 0.5 * high, half_extent);
 

@@ -105,8 +105,8 @@ impl Layer<'_> {
             limit,
         };
         if let Some(vertex) = self.mesh.positions().iter().position(|p| !p.is_finite()) {
-            let value = self.mesh.positions()[vertex].abs().max_element();
-            return Err(range_error("the position", vertex, value, f64::MAX));
+            let name = self.name.to_owned();
+            return Err(WriteError::Overflow { name, vertex });
         }
         let limit = f64::from(f32::MAX);
         let factors = self.doppler_factors.unwrap_or_default();
