@@ -1,8 +1,9 @@
 //! `photosurface export`: photosurfaces as meshes.
 
 use std::collections::{HashMap, HashSet};
+use std::ffi::OsStr;
 use std::fs;
-use std::io::{IsTerminal, stderr, stdout};
+use std::io::{IsTerminal, Write, stderr, stdout};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -10,7 +11,7 @@ use anyhow::{Context, bail, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
 use photosurface::{
     Export, Facts, Format, Photosurface, Precision, Report, Scene, Stage, StageTime, Wanted,
-    destination, step_label, write_glb, write_gltf, write_ply, write_whole,
+    WriteError, destination, step_label, write_glb, write_gltf, write_ply, write_whole,
 };
 
 use super::Status;
@@ -146,13 +147,23 @@ fn export(
         clock.stop("photosurface");
         // A file for each step is written as soon as it can be, so that memory does not grow with them.
         if args.output.split {
-            write_file(&files[step], format, stage, &std::mem::take(&mut batch))?;
+            let batch = std::mem::take(&mut batch);
+            write_file(&files[step], format, stage, &batch, || Ok(()))?;
             clock.stop("write");
         }
     }
-    if !args.output.split {
-        write_file(&files[0], format, stage, &batch)?;
-        clock.stop("write");
+    let write_report = |clock: &Clock| match report {
+        Some(report) => write_report(report, stage, &made, clock),
+        None => Ok(()),
+    };
+    if args.output.split {
+        write_report(&clock)?;
+    } else {
+        // Before the mesh appears: where the report fails, nothing is written.
+        write_file(&files[0], format, stage, &batch, || {
+            clock.stop("write");
+            write_report(&clock)
+        })?;
     }
     progress.finish_and_clear();
 
@@ -162,15 +173,7 @@ fn export(
     if !is_stdout(&files[0]) {
         verbosity.result(summary(files, format, &made));
     }
-    let certified = all_certified(&made, verbosity);
-    if let Some(report) = report {
-        let stages = clock
-            .stages
-            .into_iter()
-            .map(|(name, seconds)| StageTime { name, seconds });
-        write_report(report, stage, made, stages.collect())?;
-    }
-    Ok(certified)
+    Ok(all_certified(&made, verbosity))
 }
 
 /// `out.glb` and `_lod0` make `out_lod0.glb`; a stream stays what it is.
@@ -178,9 +181,13 @@ fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     if suffix.is_empty() || is_stdout(path) {
         return path.to_owned();
     }
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let extension = path.extension().unwrap_or_default().to_string_lossy();
-    path.with_file_name(format!("{stem}{suffix}.{extension}"))
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(suffix);
+    if let Some(extension) = path.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    path.with_file_name(name)
 }
 
 impl OutputArgs {
@@ -244,9 +251,12 @@ impl OutputArgs {
         if !self.split {
             return vec![path.to_owned()];
         }
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let extension = path.extension().unwrap_or_default().to_string_lossy();
-        let file = |step| path.with_file_name(format!("{stem}_{}.{extension}", step_label(step)));
+        let file = |step| {
+            let mut name = path.file_stem().unwrap_or_default().to_owned();
+            name.push(format!("_{}.", step_label(step)));
+            name.push(path.extension().unwrap_or_default());
+            path.with_file_name(name)
+        };
         (0..steps).map(file).collect()
     }
 }
@@ -292,11 +302,13 @@ fn check_destinations(levels: &[Level], format: Format, read: &[PathBuf]) -> any
     Ok(())
 }
 
+/// Writes a file, and does what is left to do when all of it is written and it is about to appear.
 fn write_file(
     path: &Path,
     format: Format,
     stage: &Stage,
     photosurfaces: &[Photosurface],
+    before_it_appears: impl FnOnce() -> Result<(), WriteError>,
 ) -> anyhow::Result<()> {
     let scene = stage.facts();
     let export = Export {
@@ -305,22 +317,34 @@ fn write_file(
         photosurfaces,
     };
     if is_stdout(path) {
-        return print(|out| Ok(write_glb(&export, out)?));
+        print(|out| Ok(write_glb(&export, out)?))?;
+        return Ok(before_it_appears()?);
     }
     match format {
-        Format::Glb => write_whole(path, |writer| write_glb(&export, writer))?,
-        Format::Ply => write_whole(path, |writer| write_ply(&export, writer))?,
+        Format::Glb => write_whole(path, |writer| {
+            write_glb(&export, &mut *writer)?;
+            writer.flush()?;
+            before_it_appears()
+        })?,
+        Format::Ply => write_whole(path, |writer| {
+            write_ply(&export, &mut *writer)?;
+            writer.flush()?;
+            before_it_appears()
+        })?,
         Format::Gltf => {
             let binary = binary_beside(path);
-            let name = binary
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned();
+            let name = binary.file_name().and_then(OsStr::to_str);
+            let name = name.with_context(|| {
+                let path = path.display();
+                format!("{path}: a .gltf refers to its .bin by name, which has to be UTF-8")
+            })?;
             // The data first: a .gltf never stands there without it.
             write_whole(path, |json_writer| {
                 write_whole(&binary, |binary_writer| {
-                    write_gltf(&export, &name, json_writer, binary_writer)
+                    write_gltf(&export, name, &mut *json_writer, &mut *binary_writer)?;
+                    json_writer.flush()?;
+                    binary_writer.flush()?;
+                    before_it_appears()
                 })
             })?;
         }
@@ -331,22 +355,33 @@ fn write_file(
 fn write_report(
     path: &Path,
     stage: &Stage,
-    made: Vec<Facts>,
-    stages: Vec<StageTime>,
-) -> anyhow::Result<()> {
+    made: &[Facts],
+    clock: &Clock,
+) -> Result<(), WriteError> {
+    let stages = clock.stages.iter();
     let report = Report {
         scene: stage.facts(),
-        objects: made,
-        stages,
+        objects: made.to_vec(),
+        stages: stages
+            .map(|&(name, seconds)| StageTime { name, seconds })
+            .collect(),
     };
     let text = report.to_json() + "\n";
     let write = |writer: &mut dyn std::io::Write| Ok(writer.write_all(text.as_bytes())?);
     if is_stdout(path) {
-        print(|out| Ok(write(out)?))?;
+        let mut out = stdout().lock();
+        write(&mut out)
+            .and_then(|()| Ok(out.flush()?))
+            .map_err(|error| match error {
+                WriteError::Stream(source) => WriteError::Io {
+                    path: "stdout".into(),
+                    source,
+                },
+                other => other,
+            })
     } else {
-        write_whole(path, write)?;
+        write_whole(path, write)
     }
-    Ok(())
 }
 
 fn summary(files: &[PathBuf], format: Format, made: &[Facts]) -> String {
