@@ -260,7 +260,7 @@ fn stdin_and_stdout_take_the_place_of_files() {
         .error(&["stdin", "line 1", "objects"]);
     workplace
         .run_with("export - -o x.glb", b"\xff\xfe", &[])
-        .error(&["stdin", "neither a GLB nor text"]);
+        .error(&["stdin", "this is neither"]);
     workplace.run("export --split -o -").error(&["--split"]);
     workplace
         .run("export -o - --report -")

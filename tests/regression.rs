@@ -174,3 +174,98 @@ fn a_file_too_large_is_refused_before_it_is_computed() {
     assert!(run.stderr.contains("at most 4294967295"), "{run}");
     assert!(workplace.files().is_empty());
 }
+
+/// Messages that named a file twice, blamed the wrong flag, or said NaN.
+#[test]
+fn messages_say_what_is_wrong() {
+    let workplace = Workplace::new();
+    let triangle = |x: &str| format!("v 0 0 0\nv {x} 0 0\nv 0 {x} 0\nf 1 2 3\n");
+    workplace.write("huge.obj", triangle("1e300"));
+    workplace.write("tiny.obj", triangle("1e-42"));
+    workplace.write("one.obj", triangle("1"));
+    workplace.write("two.obj", "v 0 0 0\nv 1 0 0\nf 1 2\n");
+    workplace.write("latin.json", b"{ \"title\": \"\xfc\" }");
+    let object = |what: &str| format!("{{ \"objects\": [ {{ \"name\": \"a\", {what} }} ] }}");
+    workplace.write("lost.json", object("\"file\": \"nope.obj\""));
+    workplace.write(
+        "wide.json",
+        object("\"file\": \"one.obj\", \"position\": [1e300, 0, 0]"),
+    );
+    for (arguments, words) in [
+        (
+            "lost.json",
+            "error: lost.json: object \"a\": cannot read \"nope.obj\": No such file",
+        ),
+        ("nope.obj", "error: cannot read \"nope.obj\": No such file"),
+        (
+            "latin.json",
+            "latin.json: not text in UTF-8: byte 12, counted from 0, is 0xfc",
+        ),
+        (
+            "huge.obj",
+            "huge.obj: 1e300 is a coordinate of vertex 1 of part \"huge\", expected at most 1e75",
+        ),
+        (
+            "wide.json --rapidity 300",
+            "overflows 64-bit numbers: lengths, times or the rapidity are too large",
+        ),
+        (
+            "tiny.obj --observer 0,0,0",
+            "too small for the 32-bit numbers",
+        ),
+        (
+            "two.obj",
+            "the file has none of three corners or more; 1 face of fewer",
+        ),
+        (
+            "one.obj --direction 0,0,0 --beta 0.5",
+            "error: --direction: ",
+        ),
+    ] {
+        let run = workplace
+            .run(&format!("export {arguments}"))
+            .error(&[words]);
+        assert!(!run.stderr.contains("NaN"), "{run}");
+    }
+    for stdin in [triangle("1"), r#"{ "asset": { "version": "2.0" } }"#.into()] {
+        workplace
+            .run_with("check -", stdin.as_bytes(), &[])
+            .error(&["stdin takes a scene (JSON) or a GLB"]);
+    }
+    let run = workplace
+        .run("export one.obj -o no/such/a.glb")
+        .error(&["No such file"]);
+    assert!(!run.stderr.contains(".photosurface-"), "{run}");
+}
+
+/// A report that could not be written ended with status 2, "nothing written", though the mesh was.
+#[cfg(target_os = "linux")]
+#[test]
+fn without_its_report_no_mesh_appears() {
+    let workplace = Workplace::new();
+    for format in ["glb", "gltf", "ply"] {
+        for report in ["--report /dev/full", "--report - >/dev/full"] {
+            workplace
+                .run_shell(&format!("photosurface export -o out.{format} {report}"))
+                .error(&["No space left"]);
+            assert!(workplace.files().is_empty(), "{:?}", workplace.files());
+        }
+    }
+}
+
+/// Arguments that are no UTF-8 were refused, though they are names of files as good as any.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_name_need_not_be_text() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let workplace = Workplace::new();
+    let name = |bytes: &'static [u8]| workplace.path("").join(OsStr::from_bytes(bytes));
+    std::fs::write(name(b"\xff.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let status = std::process::Command::new(env!("CARGO_BIN_EXE_photosurface"))
+        .args(["export", "-q", "--split", "-o"])
+        .args([name(b"\xfe.glb"), name(b"\xff.obj")])
+        .status();
+    assert!(status.unwrap().success());
+    assert!(name(b"\xfe_step000.glb").exists());
+}

@@ -1,5 +1,7 @@
 //! Flags that commands share: what to look at, and how to override what the scene says.
 
+use std::path::PathBuf;
+
 use anyhow::{Context, ensure};
 use clap::Args;
 use photosurface::{DVec3, Length, Observer, Scene, Velocity, even_steps};
@@ -10,7 +12,7 @@ pub(super) struct InputArgs {
     /// A scene file (.json), or a mesh (.glb, .gltf, .obj), or - for either from stdin (JSON or GLB);
     /// without it the built-in scene "sphere" is taken
     #[arg(value_name = "SCENE|MESH")]
-    pub(super) input: Option<String>,
+    pub(super) input: Option<PathBuf>,
     /// Take a built-in scene; `photosurface example` lists them
     #[arg(long, value_name = "NAME", conflicts_with = "input")]
     pub(super) example: Option<String>,
@@ -32,7 +34,8 @@ pub(super) struct ObserverArgs {
     /// Rapidity of the observer, atanh(beta), from 0 to 350
     #[arg(long, value_name = "R", group = "speed", allow_negative_numbers = true)]
     rapidity: Option<f64>,
-    /// Direction of the observer's motion, of any length [default for a mesh: 0,0,-1]
+    /// Direction of the observer's motion, of any length; without a speed it turns the scene's velocity, and
+    /// a mesh is seen at rest from that side [default for a mesh: 0,0,-1]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     direction: Option<DVec3>,
     /// Place of the observation in the scene frame, in scene units [default for a mesh: two diagonals of
@@ -91,6 +94,9 @@ impl ObserverArgs {
     fn velocity(&self, observer: &Observer) -> anyhow::Result<Velocity> {
         let scene = observer.velocity;
         let direction = self.direction.unwrap_or(scene.direction());
+        if self.direction.is_some() {
+            Velocity::from_rapidity(0.0, direction).context("--direction")?;
+        }
         if let Some(beta) = self.beta {
             return Velocity::from_beta(beta, direction).context("--beta");
         }

@@ -4,10 +4,10 @@ use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail, ensure};
 use photosurface::{
-    BUILT_IN_SCENES, DVec3, Findings, Model, Object, Observer, Scene, Source, load_models,
-    read_gltf_bytes, read_model,
+    BUILT_IN_SCENES, DVec3, Findings, Model, Object, Observer, ReadError, Scene, Source,
+    load_models, read_gltf_bytes, read_model,
 };
 
 use super::args::{InputArgs, ObserverArgs};
@@ -37,14 +37,14 @@ impl Input {
         observer: &ObserverArgs,
         verbosity: Verbosity,
     ) -> anyhow::Result<Self> {
-        match input.input.as_deref() {
+        match input.input.as_deref().map(Path::new) {
             None => {
                 let name = input.example.as_deref().unwrap_or(BUILT_IN_SCENES[0].name);
                 let scene =
                     Scene::from_json(built_in(name)?.json).expect("built-in scenes are tested");
                 Self::from_scene(name, scene, None, observer, verbosity)
             }
-            Some("-") => {
+            Some(path) if path == Path::new("-") => {
                 let mut bytes = Vec::new();
                 std::io::stdin()
                     .lock()
@@ -54,11 +54,10 @@ impl Input {
                     let read = read_gltf_bytes(&bytes, Path::new("")).context("stdin")?;
                     return Self::from_mesh("mesh", read, None, observer, verbosity);
                 }
-                let text = String::from_utf8(bytes).context("stdin is neither a GLB nor text")?;
-                let scene = Scene::from_json(&text).context("stdin")?;
-                Self::from_scene("scene", scene, None, observer, verbosity)
+                let scene = scene_from_stdin(&bytes)?;
+                Self::from_scene("stdin", scene, None, observer, verbosity)
             }
-            Some(path) => Self::from_path(Path::new(path), observer, verbosity),
+            Some(path) => Self::from_path(path, observer, verbosity),
         }
     }
 
@@ -76,12 +75,16 @@ impl Input {
             .map(|extension| extension.to_string_lossy().to_ascii_lowercase());
         match extension.as_deref() {
             Some("json") => {
-                let text = fs::read_to_string(path).with_context(|| place.clone())?;
-                let scene = Scene::from_json(&text).with_context(|| place)?;
+                let bytes = fs::read(path).with_context(|| place.clone())?;
+                let scene = scene_from_bytes(&bytes).with_context(|| place)?;
                 Self::from_scene(&name, scene, Some(path), observer, verbosity)
             }
             Some("glb" | "gltf" | "obj") => {
-                let read = read_model(path).with_context(|| place)?;
+                let read = read_model(path).map_err(|error| match &error {
+                    // It names the file itself.
+                    ReadError::File { path: named, .. } if named == path => error.into(),
+                    _ => anyhow::Error::new(error).context(place),
+                })?;
                 Self::from_mesh(&name, read, Some(path), observer, verbosity)
             }
             _ => bail!(
@@ -99,7 +102,8 @@ impl Input {
     ) -> anyhow::Result<Self> {
         let scene = observer.apply(scene)?;
         let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
-        let (models, found) = load_models(&scene, directory)?;
+        let place = path.map_or(name.to_string(), |path| path.display().to_string());
+        let (models, found) = load_models(&scene, directory).with_context(|| place)?;
         let mut files: Vec<PathBuf> = path.map(Path::to_owned).into_iter().collect();
         for (file, findings) in found {
             for note in findings.notes {
@@ -145,6 +149,35 @@ impl Input {
             files: findings.files,
         })
     }
+}
+
+fn scene_from_bytes(bytes: &[u8]) -> anyhow::Result<Scene> {
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let offset = error.valid_up_to();
+        anyhow!(
+            "not text in UTF-8: byte {offset}, counted from 0, is {:#04x}",
+            bytes[offset]
+        )
+    })?;
+    Ok(Scene::from_json(text)?)
+}
+
+/// Stdin has no name that says what it holds.
+fn scene_from_stdin(bytes: &[u8]) -> anyhow::Result<Scene> {
+    const EXPECTED: &str = "stdin takes a scene (JSON) or a GLB";
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let text = text.trim_ascii_start();
+    ensure!(
+        text.starts_with(b"{") || text.starts_with(b"["),
+        "{EXPECTED}, this is neither; name a file to read .obj or .gltf"
+    );
+    let json = serde_json::from_slice::<serde_json::Value>(text);
+    let is_gltf = json.is_ok_and(|json| json.get("asset").is_some());
+    ensure!(
+        !is_gltf,
+        "{EXPECTED}, this is a .gltf; name its file, for it refers to others"
+    );
+    scene_from_bytes(bytes).context("stdin")
 }
 
 /// Two diagonals of the bounds before the middle of the model.

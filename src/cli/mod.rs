@@ -37,7 +37,7 @@ const ERROR: u8 = 2;
 /// Units: the speed of light is 1; lengths and times share one unit. Coordinates are right-handed, y up.
 /// Results go to files, or to stdout with -o -; everything else goes to stderr.
 /// Exit status: 0 done and certified, 1 written but not certified (budget reached, subdivision off), 2 an error,
-/// nothing written, 130 interrupted.
+/// nothing written (with --split, steps that were done stay), 130 interrupted.
 #[derive(Debug, Parser)]
 #[command(name = "photosurface", version, max_term_width = 100)]
 struct Cli {
