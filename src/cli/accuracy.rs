@@ -71,7 +71,7 @@ impl AccuracyArgs {
             precision,
             ..Wanted::default()
         };
-        let predicted = predicted_triangles(stage, wanted);
+        let predicted = predicted_total(stage, wanted);
         let needed = grouped(predicted.round() as usize);
         verbosity.detail(format_args!("about {needed} triangles"));
         let most = self.max_triangles as f64;
@@ -85,7 +85,7 @@ impl AccuracyArgs {
             ..wanted
         };
         while loosening < MAX_LOOSENING
-            && PREDICTION_ROOM * predicted_triangles(stage, loosened(loosening)) > most
+            && PREDICTION_ROOM * predicted_total(stage, loosened(loosening)) > most
         {
             loosening *= 1.5;
         }
@@ -105,16 +105,23 @@ impl AccuracyArgs {
     }
 }
 
-/// About how many triangles all photosurfaces will have; of many steps only some are looked at.
-fn predicted_triangles(stage: &Stage, wanted: Wanted) -> f64 {
+/// About how many triangles the photosurfaces of each object will have, all steps together; of many steps only
+/// some are looked at.
+pub(super) fn predicted_triangles(stage: &Stage, wanted: Wanted) -> Vec<f64> {
     let steps = stage.scene().steps().len();
     let looked_at = steps.min(STEPS_LOOKED_AT);
-    let at =
-        |index| stage.predicted_triangles(index * (steps - 1) / (looked_at - 1).max(1), wanted);
-    let sum: f64 = (0..looked_at)
-        .map(|index| at(index).iter().sum::<f64>())
-        .sum();
-    sum * steps as f64 / looked_at as f64
+    let mut sums = vec![0.0; stage.scene().objects().len()];
+    for index in 0..looked_at {
+        let step = index * (steps - 1) / (looked_at - 1).max(1);
+        for (sum, triangles) in sums.iter_mut().zip(stage.predicted_triangles(step, wanted)) {
+            *sum += triangles * steps as f64 / looked_at as f64;
+        }
+    }
+    sums
+}
+
+fn predicted_total(stage: &Stage, wanted: Wanted) -> f64 {
+    predicted_triangles(stage, wanted).iter().sum()
 }
 
 /// Says which photosurfaces are not certified; `true` if all are.

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use photosurface::{Format, Precision, Stage, Wanted};
 
-use super::accuracy::AccuracyArgs;
+use super::accuracy::{AccuracyArgs, predicted_triangles};
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, counted, grouped, print};
@@ -54,15 +54,7 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<()> {
 fn table(stage: &Stage, wanted: Wanted, out: &mut dyn Write) -> anyhow::Result<()> {
     let scene = stage.scene();
     let steps = scene.steps().len();
-    let mut predicted = vec![0.0; scene.objects().len()];
-    for step in 0..steps {
-        for (sum, triangles) in predicted
-            .iter_mut()
-            .zip(stage.predicted_triangles(step, wanted))
-        {
-            *sum += triangles;
-        }
-    }
+    let predicted = predicted_triangles(stage, wanted);
     writeln!(
         out,
         "{:<20} {:>6} {:>12} {:>13} {:>10} {:>12} {:>16}",

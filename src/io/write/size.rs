@@ -30,8 +30,11 @@ impl Format {
     ///
     /// Never more than the file will have: what would fit is not refused.
     pub fn least_size(self, stage: &Stage, steps: usize) -> Result<u64, WriteError> {
-        // Shapes are made as fine as their tolerance asks for, which may be next to nothing.
-        let fixed = |object: &Object| !matches!(object.source, Source::Shape(..));
+        // Other shapes are made as fine as their tolerance asks for, which may be next to nothing.
+        let fixed = |object: &Object| match &object.source {
+            Source::Shape(shape, _) => shape.has_resolution(),
+            Source::File(_) | Source::Model(_) => true,
+        };
         let parts: Vec<&Part> = stage
             .objects()
             .filter(|(object, _)| fixed(object))
@@ -110,24 +113,34 @@ fn least_ply(parts: &[&Part], steps: u64) -> Result<u64, WriteError> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::io::{Export, load_models, write_glb, write_ply};
+    use crate::mesh::Model;
     use crate::photosurface::Wanted;
-    use crate::scene::Scene;
+    use crate::scene::{Observer, Scene};
 
     #[test]
     fn the_least_size_is_just_below_that_of_the_file() {
         let scene = Scene::from_json(
             r##"{ "objects": [
                 { "name": "a", "shape": { "sphere": { "radius": 1 } }, "checker": "#ffffff", "position": [0, 3, 0] },
-                { "name": "b", "shape": { "torus": { "major_radius": 2, "minor_radius": 1 } } } ],
-                "steps": [0, 1, 2] }"##,
+                { "name": "b", "shape": { "torus": { "major_radius": 2, "minor_radius": 1 } } } ] }"##,
         )
         .unwrap();
         let (models, _) = load_models(&scene, "".as_ref()).unwrap();
-        let stage = Stage::new(scene, models);
+        // The same as geometry that is at hand: no tolerance makes it coarser.
+        let own = |(object, model): (&Object, &Model)| Object {
+            source: Source::Model(Arc::new(model.clone())),
+            ..object.clone()
+        };
+        let objects = scene.objects().iter().zip(&models).map(own).collect();
+        let scene = Scene::new(Observer::default(), objects).unwrap();
+        let stage = Stage::new(scene.with_steps(vec![0.0, 1.0, 2.0]).unwrap(), models);
         let wanted = Wanted {
             doppler_factors: true,
+            ..Wanted::default()
         };
         let photosurfaces: Vec<_> = (0..3)
             .flat_map(|step| stage.photosurfaces(step, wanted))

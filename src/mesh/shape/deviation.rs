@@ -98,7 +98,7 @@ impl Shape {
     }
 
     /// Whether it has a resolution of its own.
-    fn has_resolution(&self) -> bool {
+    pub(crate) fn has_resolution(&self) -> bool {
         match self {
             Self::Sphere(shape) => shape.resolution.is_some(),
             Self::Cylinder(shape) => shape.resolution.is_some(),
