@@ -210,7 +210,7 @@ fn a_bare_mesh_needs_no_scene() {
     // light-cone coordinates puts them, gamma (d + beta r) ahead.
     let json = glb_json(&bytes);
     let z = json["nodes"][0]["translation"][2].as_f64().unwrap_or(0.0);
-    let local = json["accessors"][0]["max"][2].as_f64().unwrap();
+    let local = json["accessors"][0]["min"][2].as_f64().unwrap();
     let expected = -1.25 * (2.0 + 0.6 * 6f64.sqrt());
     assert!(
         (z + local - expected).abs() < 1e-6,
@@ -554,9 +554,8 @@ fn counts_and_sizes_are_told_as_people_say_them() {
     assert_eq!(run.stderr, summary, "{run}");
     let run = workplace.run("check one.obj -q").success();
     assert!(
-        run.stdout_text().ends_with(
-            "1 step: 1 photosurface, 3 vertices, 1 triangle, at least 84 bytes as .glb\n"
-        ),
+        run.stdout_text()
+            .ends_with("1 step: 1 photosurface, about 1 triangle\n"),
         "{run}"
     );
     let run = workplace.run("check one.obj -v").success();
