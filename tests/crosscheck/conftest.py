@@ -13,31 +13,45 @@ def pytest_configure():
 
 
 @pytest.fixture(scope="session")
-def photosurface():
-    """Runs the binary with these arguments; it has to succeed. Returns what it printed, as bytes."""
+def run():
+    """Runs the binary with these arguments; returns how it ended and what it printed, as bytes."""
 
     def run(*arguments, stdin=b"", threads=None):
         command = [os.environ["PHOTOSURFACE_BINARY"], *map(str, arguments)]
         environment = os.environ | ({"RAYON_NUM_THREADS": str(threads)} if threads else {})
-        done = subprocess.run(
+        return subprocess.run(
             command, input=stdin, capture_output=True, timeout=120, env=environment
         )
-        assert done.returncode == 0, f"{command} gave {done.returncode}\n{done.stderr.decode()}"
-        return done.stdout
 
     return run
 
 
 @pytest.fixture(scope="session")
-def export(photosurface, tmp_path_factory):
+def photosurface(run):
+    """Runs the binary with these arguments; it has to succeed. Returns what it printed, as bytes."""
+
+    def succeed(*arguments, **options):
+        done = run(*arguments, **options)
+        assert done.returncode == 0, f"{done.args} gave {done.returncode}\n{done.stderr.decode()}"
+        return done.stdout
+
+    return succeed
+
+
+@pytest.fixture(scope="session")
+def export(run, tmp_path_factory):
     """Exports a scene (as a dictionary) or a mesh (as a path); returns the path of the file.
 
     The same export is made once per session. Other files that belong to it lie beside it, in a
-    directory of its own; `report.json` is there always.
+    directory of its own; `report.json` is there always, and `messages.txt`, what was said on stderr.
+
+    The exit status has to be that of the certificates in the report: 0 if all are complete, else 1. And
+    all have to be complete, unless that was not asked for: with `--no-subdivide`, or `certified` is None
+    (either will do) or False (not all).
     """
     done = {}
 
-    def run(source, *flags, to="out.glb"):
+    def make(source, *flags, to="out.glb", certified=True):
         key = json.dumps([source if isinstance(source, dict) else str(source), flags, to])
         if key not in done:
             directory = tmp_path_factory.mktemp("export")
@@ -46,11 +60,22 @@ def export(photosurface, tmp_path_factory):
                 scene.write_text(json.dumps(source))
                 source = scene
             report = directory / "report.json"
-            photosurface("export", source, *flags, "-o", directory / to, "--report", report, "-q")
-            done[key] = directory / to
-        return done[key]
+            ended = run("export", source, *flags, "-o", directory / to, "--report", report)
+            done[key] = directory / to, ended
+            (directory / "messages.txt").write_bytes(ended.stderr)
+        path, ended = done[key]
+        said = f"{ended.args} gave {ended.returncode}\n{ended.stderr.decode()}"
+        assert ended.returncode in (0, 1), said
+        reports = [json.loads(file.read_text()) for file in path.parent.glob("report*.json")]
+        complete = all(
+            facts["certificate"]["complete"] for report in reports for facts in report["objects"]
+        )
+        assert ended.returncode == (0 if complete else 1), said
+        if "--no-subdivide" not in flags and certified is not None:
+            assert complete == certified, said
+        return path
 
-    return run
+    return make
 
 
 @pytest.fixture(scope="session")
@@ -65,6 +90,6 @@ def placed_vertices(export):
         import ply
 
         at_rest = {k: v for k, v in spec.items() if k not in ("position", "velocity")}
-        return ply.read(export({"objects": [at_rest]}, to="rest.ply"))
+        return ply.read(export({"objects": [at_rest]}, "--no-subdivide", to="rest.ply"))
 
     return vertices

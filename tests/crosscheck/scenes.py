@@ -15,6 +15,8 @@ SPHERE = {
         }
     ],
     "steps": [-6, 0, 2],
+    # What so many facets allow.
+    "tolerance": {"relative": 0.02},
 }
 
 # Both move, in different directions (so that boosts do not commute), the observation is not at the
@@ -45,6 +47,8 @@ TORUS = {
             "scale": 2,
         }
     ],
+    # What so many facets allow.
+    "tolerance": {"relative": 0.02},
 }
 
 # Several objects at once, one of which recedes from the other.

@@ -1,5 +1,7 @@
 """Every vertex is where the oracle says, to the rounding of the numbers in the file.
 
+Without subdivision, so that the vertices are those of the mesh at rest, in its order.
+
 The limits are not chosen but derived. A vertex in a .glb is an f64 translation plus an f32 number, which
 rounding to nearest takes from the truth by at most 2^-24 of itself. What f64 loses on the way is limited
 by ROUNDINGS half-units of `View.rounding_scale`, the size of the terms that any honest evaluation adds:
@@ -56,7 +58,7 @@ def assert_seen(view, offsets, nodes):
 @pytest.mark.parametrize("scene", [SPHERE, CUBE, TORUS], ids=["sphere", "cube", "torus"])
 def test_shapes_as_glb(scene, export, placed_vertices):
     offsets = placed_vertices(scene["objects"][0]).positions.tolist()
-    document = glb.Gltf(export(scene))
+    document = glb.Gltf(export(scene, "--no-subdivide"))
     for step, view in enumerate(views(scene)):
         assert_seen(view, offsets, nodes_of_step(document, step))
 
@@ -65,7 +67,7 @@ def test_shapes_as_glb(scene, export, placed_vertices):
 def test_shapes_as_ply_keep_double_precision(scene, export, placed_vertices):
     """All steps are one after the other in one mesh; quality is the Doppler factor, in f32."""
     offsets = placed_vertices(scene["objects"][0]).positions.tolist()
-    found = ply.read(export(scene, to="out.ply"))
+    found = ply.read(export(scene, "--no-subdivide", to="out.ply"))
     assert found.positions.dtype == numpy.float64
     rows = zip(found.positions.tolist(), found.quality.tolist(), strict=True)
     for view in views(scene):
@@ -122,7 +124,7 @@ def test_a_mesh_from_elsewhere_without_a_scene_file(export, tmp_path):
     """pyvista's airplane, whose vertices come from its own file, seen through flags alone."""
     mesh = write_airplane(tmp_path)
     flags = ["--beta", "0.9", "--direction", "1,2,-2", "--observer", "100,-50,900"]
-    document = glb.Gltf(export(mesh, *flags, "--steps=-100,50"))
+    document = glb.Gltf(export(mesh, *flags, "--steps=-100,50", "--no-subdivide"))
     (source,) = glb.Gltf(mesh).nodes
     scene = {
         "observer": {
@@ -139,7 +141,7 @@ def test_a_mesh_from_elsewhere_without_a_scene_file(export, tmp_path):
 
 def test_the_direction_defaults_to_that_of_a_gltf_camera(export, tmp_path):
     mesh = write_airplane(tmp_path)
-    document = glb.Gltf(export(mesh, "--gamma", "3", "--observer", "0,0,0"))
+    document = glb.Gltf(export(mesh, "--gamma", "3", "--observer", "0,0,0", "--no-subdivide"))
     (source,) = glb.Gltf(mesh).nodes
     observer = {"velocity": {"gamma": 3, "direction": [0, 0, -1]}}
     (view,) = views({"observer": observer, "objects": [{}]})
@@ -158,6 +160,6 @@ def test_an_obj_with_materials(export, placed_vertices, tmp_path):
     apart = numpy.linalg.norm(offsets[:, None] - written, axis=2)
     assert apart.min(axis=1).max() <= AT_REST * numpy.linalg.norm(written, axis=1).max()
     assert set(apart.argmin(axis=1)) == set(range(len(written)))
-    document = glb.Gltf(export(scene))
+    document = glb.Gltf(export(scene, "--no-subdivide"))
     for step, view in enumerate(views(scene)):
         assert_seen(view, offsets.tolist(), nodes_of_step(document, step))
