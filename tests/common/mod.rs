@@ -9,6 +9,7 @@
 pub(crate) mod command;
 pub(crate) mod oracle;
 pub(crate) mod passing;
+pub(crate) mod refining;
 
 use photosurface::{DVec3, PhotosurfaceMap, Velocity};
 

@@ -1,0 +1,97 @@
+//! How many triangles a plate in front of the observer takes, against the fewest that theory allows, and how
+//! long they take.
+//!
+//! `cargo bench --bench plates` prints the table; `cargo bench --bench plates -- --samples 5000000` also holds the
+//! certificates against that many random places.
+
+#![allow(clippy::print_stdout, reason = "a table is what it is for")]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use common::Random;
+use common::refining::{Sighting, model, plate};
+use photosurface::{DVec3, Source, Tolerance, Velocity, triangle_gap};
+
+const REPEATS: usize = 7;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
+    let samples = arguments
+        .iter()
+        .position(|argument| argument == "--samples")
+        .map_or(0usize, |at| {
+            let number = arguments.get(at + 1).and_then(|number| number.parse().ok());
+            number.expect("--samples takes a number of places")
+        });
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let pool = pool.expect("a thread");
+    let velocity = Velocity::from_beta(0.6, DVec3::NEG_Z).expect("slower than light");
+    let mut random = Random::new(1);
+
+    println!("     h   e_tol    1:4 split   triangles      N_min   ratio   triangles/s");
+    for h in [1.0, 0.1, 0.01, 0.001] {
+        for e in [1e-3, 1e-4, 1e-5] {
+            let tolerance = Tolerance::Absolute(e * velocity.gamma_beta());
+            let sighting = Sighting::new(DVec3::ZERO, velocity, tolerance);
+            let stage = sighting.stage(Source::Model(Arc::new(model(&[plate(h)]))));
+            let mut times: Vec<Duration> = (0..REPEATS)
+                .map(|_| {
+                    let start = Instant::now();
+                    let made = pool.install(|| stage.photosurfaces(0, sighting.wanted).count());
+                    assert_eq!(made, 1);
+                    start.elapsed()
+                })
+                .collect();
+            times.sort();
+            let sighted = sighting.of_one(&plate(h));
+            let certificate = &sighted.certificate;
+            let rate = sighted.triangle_count() as f64 / times[REPEATS / 2].as_secs_f64();
+            println!(
+                "{h:6} {e:7.0e} {:12} {:11} {:10.0} {:7.3} {rate:13.0}{}",
+                uniform(h, e),
+                sighted.triangle_count(),
+                certificate.minimum_triangles,
+                certificate.ratio,
+                if certificate.complete {
+                    ""
+                } else {
+                    "  incomplete"
+                },
+            );
+            if samples > 0 {
+                let each = samples.div_ceil(12 * sighted.triangle_count());
+                let largest = sighting.assert_contained(&sighted, each, &mut random);
+                println!(
+                    "       {} places: largest gap {largest:.9e}, bound {:.9e}, tolerance {:.9e}",
+                    each * sighted.triangle_count(),
+                    certificate.gap,
+                    certificate.tolerance,
+                );
+            }
+        }
+    }
+}
+
+/// How many triangles it takes when all are divided into four as long as the worst needs it.
+fn uniform(h: f64, e: f64) -> u64 {
+    let mut levels = 0;
+    // The worst are around the foot of the perpendicular, which is a corner of all levels but the first.
+    let fits = |levels: u32| {
+        let side = 2.0 / f64::from(1u32 << levels);
+        let corner = |x: f64, y: f64| DVec3::new(x, y, h);
+        let middle = if levels == 0 { -1.0 } else { 0.0 };
+        let triangle = |to: [[f64; 2]; 3]| {
+            let [a, b, c] = to.map(|[x, y]| corner(middle + x * side, middle + y * side));
+            triangle_gap(a, b, c)
+        };
+        triangle([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]) <= e
+    };
+    while !fits(levels) {
+        levels += 1;
+    }
+    2 * 4u64.pow(levels)
+}
