@@ -13,7 +13,7 @@ const PREDICTION_ROOM: f64 = 1.4;
 const STEPS_LOOKED_AT: usize = 32;
 
 /// A budget below what is there before any refinement fits no tolerance.
-const MAX_LOOSENING: f64 = 1e12;
+const MAX_LOOSENING: f64 = 1e9;
 
 /// How accurate the result is to be, and what that may cost.
 #[derive(Debug, Args)]
@@ -79,27 +79,29 @@ impl AccuracyArgs {
             return wanted;
         }
         // Triangles go with the inverse of the tolerance, but for those that are there anyway.
-        let mut loosening = PREDICTION_ROOM * predicted / most;
         let loosened = |loosening| Wanted {
             loosening,
             ..wanted
         };
-        while loosening < MAX_LOOSENING
-            && PREDICTION_ROOM * predicted_total(stage, loosened(loosening)) > most
-        {
-            loosening *= 1.5;
+        let (mut loosening, mut excess) = (1.0, PREDICTION_ROOM * predicted / most);
+        while excess > 1.0 && loosening < MAX_LOOSENING {
+            loosening *= excess.max(1.5);
+            excess = PREDICTION_ROOM * predicted_total(stage, loosened(loosening)) / most;
         }
-        let scene = stage.scene();
-        let fitting = scene
-            .objects()
-            .iter()
-            .map(|object| scene.tolerance(object).times(loosening));
-        let mut fitting: Vec<_> = fitting.map(|tolerance| tolerance.to_string()).collect();
-        fitting.dedup();
+        let advice = if excess > 1.0 {
+            "no tolerance would fit".to_owned()
+        } else {
+            let scene = stage.scene();
+            let objects = scene.objects().iter();
+            let fitting =
+                objects.map(|object| scene.tolerance(object).times(loosening).to_string());
+            let mut fitting: Vec<_> = fitting.collect();
+            fitting.dedup();
+            format!("--tolerance {} would fit", fitting.join(", "))
+        };
         verbosity.note(format_args!(
-            "the tolerance needs about {needed} triangles, more than --max-triangles {}; --tolerance {} would fit",
+            "the tolerance needs about {needed} triangles, more than --max-triangles {}; {advice}",
             self.max_triangles,
-            fitting.join(", ")
         ));
         loosened(loosening)
     }

@@ -22,6 +22,13 @@ const CURVATURE_SHARE: f64 = 0.7;
 /// What is left of a tolerance for the gap, for the sums of its certificate.
 const ROOM: f64 = 0.999;
 
+/// Beyond this part of the tolerance what curvature and rounding take cannot be made up for by the gap.
+const MOST_TAKEN: f64 = 0.95;
+
+/// Where an angle is the tolerance of a curved shape, it is one at this part of the shape's size at least: an
+/// observer who touches it sees any facet under a large angle.
+const NEAREST: f64 = 0.01;
+
 /// Where an angle is the tolerance, no triangle is made smaller than this part of the mesh: where the observer
 /// touches a surface, any gap is seen under the same angle.
 const LEAST_OF_ANGLE: f64 = 1e-6;
@@ -229,27 +236,36 @@ impl<'a> Plan<'a> {
                     least: LEAST_OF_ANGLE * diagonal * s * share,
                 }
             }
-            // Where more is taken than there is, the gap gets half of it all the same, and the certificate tells.
-            _ => Allowance::Everywhere(ROOM * (length - taken).max(0.5 * length) / gamma_beta),
+            _ => {
+                // Where next to nothing is left, the gap gets half of it all the same, and the certificate tells.
+                let left = if taken < MOST_TAKEN * length {
+                    length - taken
+                } else {
+                    0.5 * length
+                };
+                Allowance::Everywhere(ROOM * left / gamma_beta)
+            }
         }
     }
 }
 
 /// A tolerance as a length; an angle at the nearest vertex.
 fn length_of(tolerance: Tolerance, seen: &[Mesh]) -> f64 {
+    let diagonal = || {
+        let bounds = seen.iter().filter_map(Mesh::bounds);
+        let all = bounds.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)));
+        all.map_or(0.0, |(low, high)| low.distance(high))
+    };
     match tolerance {
         Tolerance::Absolute(length) => length,
-        Tolerance::Relative(fraction) => {
-            let bounds = seen.iter().filter_map(Mesh::bounds);
-            let all = bounds.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)));
-            fraction * all.map_or(0.0, |(low, high)| low.distance(high))
-        }
+        Tolerance::Relative(fraction) => fraction * diagonal(),
         Tolerance::Angle(degrees) => {
             let distances = seen
                 .iter()
                 .flat_map(Mesh::positions)
                 .map(|place| place.length());
-            degrees.to_radians().sin() * distances.fold(f64::INFINITY, f64::min)
+            let nearest = distances.fold(f64::INFINITY, f64::min);
+            degrees.to_radians().sin() * nearest.max(NEAREST * diagonal())
         }
     }
 }

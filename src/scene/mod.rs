@@ -245,10 +245,10 @@ pub fn even_steps(from: f64, to: f64, count: usize) -> Result<Vec<f64>, InvalidS
         }
     }
     let intervals = (count - 1).max(1) as f64;
-    // Weights rather than multiples of a spacing: both ends come out exactly.
-    let step = |index: usize| {
-        let weight = index as f64 / intervals;
-        from * (1.0 - weight) + to * weight
+    let step = |index: usize| match index {
+        0 => from,
+        _ if index == count - 1 => to,
+        _ => from + (to - from) * (index as f64 / intervals),
     };
     Ok((0..count).map(step).collect())
 }

@@ -347,10 +347,16 @@ impl<'a> Front<'a> {
                 return Some((w, self.inner_corner(weights)));
             }
         }
-        // Next to the boundary: where the gap is largest is inside, for the gap of the boundary is not too large.
+        // Next to the boundary: where the gap is largest, or the middle where that is on the boundary itself.
         let [a, b, c] = face.map(|vertex| vertex.corner);
         let [u, v, w] = triangle_gap_place(a.offset, b.offset, c.offset);
-        let weights = a.weights * u + b.weights * v + c.weights * w;
+        let worst = a.weights * u + b.weights * v + c.weights * w;
+        let middle = (a.weights + b.weights + c.weights) / 3.0;
+        let weights = if worst.min_element() > 1e-9 {
+            worst
+        } else {
+            middle
+        };
         let corner = self.inner_corner(weights);
         let w = self
             .chart
