@@ -113,7 +113,8 @@ struct Edges {
 /// The two vertices of an edge in an order that depends on their positions: both sides of a seam have the
 /// same one.
 fn canonical([a, b]: [u32; 2], positions: &[DVec3]) -> [u32; 2] {
-    let key = |vertex: u32| positions[vertex as usize].to_array();
+    // Adding zero makes one zero of the two: they are one place.
+    let key = |vertex: u32| positions[vertex as usize].to_array().map(|x| x + 0.0);
     let order = |p: [f64; 3], q: [f64; 3]| {
         p.iter()
             .zip(q)
@@ -184,8 +185,7 @@ fn outcome(
     let divided = |side: &[u32; 2]| edges.divisions.contains_key(&canonical(*side, positions));
     let gap = triangle_gap(a, b, c);
     let allowed = allowance.between(&[a, b, c]);
-    let is_point = corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
-    if is_point || (gap <= allowed && !sides.iter().any(divided)) {
+    if gap <= allowed && !sides.iter().any(divided) {
         let complete = gap <= allowed;
         return Outcome::Kept { gap, complete };
     }
