@@ -22,9 +22,6 @@ const CURVATURE_SHARE: f64 = 0.7;
 /// What is left of a tolerance for the gap, for the sums of its certificate.
 const ROOM: f64 = 0.999;
 
-/// Beyond this part of the tolerance what curvature and rounding take cannot be made up for by the gap.
-const MOST_TAKEN: f64 = 0.95;
-
 /// Where an angle is the tolerance of a curved shape, it is one at this part of the shape's size at least: an
 /// observer who touches it sees any facet under a large angle.
 const NEAREST: f64 = 0.01;
@@ -113,22 +110,19 @@ impl<'a> Plan<'a> {
         } else {
             plan.seen_meshes()
         };
-        let drafts = seen
-            .into_iter()
-            .zip(plan.parts.iter())
+        // One allowance for all parts, so that those that share an edge divide it alike.
+        let rounding = (seen.iter().zip(plan.parts.iter()))
             .map(|(seen, (_, part))| {
-                let rounding = rounding_bound(&view, part.mesh(), &seen, stretch, wanted.precision);
-                Draft {
-                    allowance: plan.allowance(
-                        aimed,
-                        aimed_length,
-                        plan.curvature + rounding,
-                        &seen,
-                    ),
-                    whole: plan.allowance(tolerance, plan.length, 0.0, &seen),
-                    seen,
-                }
-            });
+                rounding_bound(&view, part.mesh(), seen, stretch, wanted.precision)
+            })
+            .fold(0.0, f64::max);
+        let allowance = plan.allowance(aimed, aimed_length, plan.curvature + rounding, &seen);
+        let whole = plan.allowance(tolerance, plan.length, 0.0, &seen);
+        let drafts = seen.into_iter().map(|seen| Draft {
+            allowance,
+            whole,
+            seen,
+        });
         plan.drafts = drafts.collect();
         plan
     }
@@ -154,7 +148,12 @@ impl<'a> Plan<'a> {
                     }
                     2.0 + TYPICAL_RATIO * minimum_triangles(offsets, allowed)
                 };
-                triangles.par_iter().map(predict).sum::<f64>()
+                triangles
+                    .par_iter()
+                    .map(predict)
+                    .collect::<Vec<f64>>()
+                    .iter()
+                    .sum::<f64>()
             });
         parts.sum()
     }
@@ -171,7 +170,8 @@ impl<'a> Plan<'a> {
                     corners.map(|corner| part.mesh().positions()[corner as usize] - observer);
                 minimum_triangles(offsets, draft.whole.between(&offsets)).max(1.0)
             });
-            let minimum_triangles = minimum.sum();
+            // Added up in their order: the same sum for any number of threads.
+            let minimum_triangles = minimum.collect::<Vec<f64>>().iter().sum();
             let (part, gap) = if wanted.subdivide && velocity.rapidity() > 0.0 {
                 let refined = refine(part.mesh(), observer, &draft.allowance);
                 (part.with_mesh(refined.mesh), refined.gap)
@@ -220,7 +220,7 @@ impl<'a> Plan<'a> {
     }
 
     /// The gap `e` that a tolerance allows when `taken` of it is used for something else.
-    fn allowance(&self, tolerance: Tolerance, length: f64, taken: f64, seen: &Mesh) -> Allowance {
+    fn allowance(&self, tolerance: Tolerance, length: f64, taken: f64, seen: &[Mesh]) -> Allowance {
         let velocity = self.view.relative_velocity();
         let (gamma, gamma_beta) = (velocity.gamma(), velocity.gamma_beta());
         match tolerance {
@@ -228,7 +228,7 @@ impl<'a> Plan<'a> {
                 // (gamma beta e + taken) / (distance - gamma e - taken) <= s, solved for e.
                 let s = degrees.to_radians().sin();
                 let share = ROOM / (gamma_beta + gamma * s);
-                let diagonal = seen.bounds().map_or(0.0, |(low, high)| low.distance(high));
+                let diagonal = length_of(Tolerance::Relative(1.0), seen);
                 Allowance::Angle {
                     view: self.view,
                     share: s * share,
@@ -236,15 +236,8 @@ impl<'a> Plan<'a> {
                     least: LEAST_OF_ANGLE * diagonal * s * share,
                 }
             }
-            _ => {
-                // Where next to nothing is left, the gap gets half of it all the same, and the certificate tells.
-                let left = if taken < MOST_TAKEN * length {
-                    length - taken
-                } else {
-                    0.5 * length
-                };
-                Allowance::Everywhere(ROOM * left / gamma_beta)
-            }
+            // Where more is taken than there is, the gap gets a tenth all the same, and the certificate tells.
+            _ => Allowance::Everywhere(ROOM * (length - taken).max(0.1 * length) / gamma_beta),
         }
     }
 }
