@@ -31,8 +31,8 @@ proptest! {
         corners in prop::collection::vec(place(), 3..7),
         picks in prop::collection::vec([0u32..6, 0u32..6, 0u32..6], 1..6),
         observer in place(),
-        rapidity in 0.01..5.0,
-        exponent in 1.0..3.5,
+        rapidity in 0.01f64..5.0,
+        exponent in 1.0f64..3.5,
     ) {
         let count = corners.len() as u32;
         let triangles: Vec<_> = picks.iter().map(|t| t.map(|i| i % count)).collect();
