@@ -52,7 +52,9 @@ proptest! {
         });
         if !sliver {
             let after = Welded::of_sighted(std::slice::from_ref(&sighted));
-            after.assert_refines(&Welded::of_meshes(&[before]), sighting.observer.length(), &case);
+            // Soups may have faces that coincide, and so may their pieces: only the boundary counts.
+            let (old, new) = (Welded::of_meshes(&[before]).boundary(), after.boundary());
+            prop_assert!((new - old).abs() <= 1e-8, "{case}: {old} became {new}");
         }
         sighting.assert_contained(&sighted, 1, &mut Random::new(9));
     }
