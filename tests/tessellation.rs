@@ -1,5 +1,10 @@
 //! Certified subdivision through the public way: conforming, certified, the same for any number of threads.
 
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot be set up has failed"
+)]
+
 mod common;
 
 use common::Random;
@@ -219,7 +224,7 @@ fn error_within_bound_within_tolerance() {
                 let sighting = Sighting::new(DVec3::new(0.0, 0.05, 0.1), velocity, tolerance);
                 let predicted = sighting
                     .stage(Source::Model(
-                        common::refining::model(&[mesh.clone()]).into(),
+                        common::refining::model(std::slice::from_ref(&mesh)).into(),
                     ))
                     .predicted_triangles(0, sighting.wanted)[0];
                 if predicted > 20_000.0 {
@@ -303,14 +308,13 @@ fn an_observer_may_be_anywhere() {
         ] {
             for (name, before) in [("triangle", &alone), ("cube", &cube)] {
                 let sighting = Sighting::new(observer, moving(0.8), tolerance);
-                let start = std::time::Instant::now();
                 let after = assert_conforming(&sighting, std::slice::from_ref(before), place);
                 let certificate = &after[0].certificate;
                 let case = format!("{place}, {name}: {sighting:?} {certificate:?}");
-                // As an angle it may be too much next to the observer; the certificate says so.
-                let angle = certificate.unit == "degrees";
-                assert!(certificate.complete || angle, "{case}");
-                assert!(start.elapsed().as_secs_f64() < 5.0, "{case}");
+                // Where the observer touches a surface, any gap is seen under the same angle.
+                let touches = distance_to_mesh(observer, before) < 1e-6;
+                let hopeless = touches && certificate.unit == "degrees";
+                assert!(certificate.complete || hopeless, "{case}");
                 assert!(after[0].triangle_count() < 100_000, "{case}");
             }
         }
@@ -528,11 +532,7 @@ fn angles_are_certified_as_angles() {
             let sighting = Sighting::new(observer, moving(0.9), Tolerance::Angle(degrees));
             let sighted = sighting.of_one(&before);
             let certificate = &sighted.certificate;
-            // A triangle whose far edge is a boundary may be left with more than its near corner allows.
-            assert!(
-                certificate.total <= 2.0 * degrees,
-                "{name}: {certificate:?}"
-            );
+            assert!(certificate.complete, "{name}: {certificate:?}");
             let mut largest: f64 = 0.0;
             for corners in sighted.seen.triangles() {
                 let weights = random_weights(&mut random);

@@ -306,8 +306,12 @@ pub(crate) fn distance_to_triangle(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let to_side = |(from, to): (DVec3, DVec3)| {
         let along = to - from;
         let part = (point - from).dot(along) / along.length_squared();
-        // NaN where the side has no length.
-        point.distance(from + along * part.max(0.0).min(1.0))
+        let part = if part.is_nan() {
+            0.0
+        } else {
+            part.clamp(0.0, 1.0)
+        };
+        point.distance(from + along * part)
     };
     sides.map(to_side).into_iter().fold(f64::INFINITY, f64::min)
 }
