@@ -10,7 +10,8 @@ use crate::light_cone::View;
 use crate::mesh::{Mesh, Part};
 use crate::scene::Tolerance;
 use crate::tessellate::{
-    Allowance, Bounds, Certificate, Counts, minimum_triangles, refine, rounding_bound, triangle_gap,
+    Allowance, Bounds, Certificate, Counts, local_stretch, minimum_triangles, refine,
+    rounding_bound, triangle_gap,
 };
 
 /// What part of the tolerance of a curved shape its facets may use; the rest is for the gap between them.
@@ -42,7 +43,9 @@ pub(super) struct Plan<'a> {
     length: f64,
     /// In the object's rest frame, with names in files; those of a curved shape fine enough for the tolerance.
     parts: Cow<'a, [(String, Part)]>,
-    /// Of facets from a curved surface, as seen; zero for what is flat.
+    /// Of facets from a curved surface, at rest; zero for what is flat.
+    deviation: f64,
+    /// The same as seen, at most.
     curvature: f64,
     /// For each part: the seen mesh without refinement, its rounding, and what is allowed.
     drafts: Vec<Draft>,
@@ -76,6 +79,7 @@ impl<'a> Plan<'a> {
             tolerance,
             length: 0.0,
             parts: Cow::Borrowed(&placed.parts),
+            deviation: 0.0,
             curvature: 0.0,
             drafts: vec![],
         };
@@ -94,13 +98,14 @@ impl<'a> Plan<'a> {
                 stretch,
                 wanted.precision,
             );
-            let target = CURVATURE_SHARE * (aimed_length - rounding).max(0.5 * aimed_length);
-            let per_deviation = stretch * shaped.largest_scale;
+            let mesh = placed.parts[0].1.mesh();
+            let target =
+                CURVATURE_SHARE * plan.deviation_allowed(aimed, aimed_length, rounding, mesh);
             let shape = match wanted.subdivide {
-                true => shaped.shape.within(target / per_deviation),
+                true => shaped.shape.within(target / shaped.largest_scale),
                 false => shaped.shape.clone(),
             };
-            plan.curvature = shape.deviation() * per_deviation;
+            plan.deviation = shape.deviation() * shaped.largest_scale;
             if shape != shaped.shape {
                 plan.parts = Cow::Owned(shaped.parts_like(&shape, &placed.parts));
             }
@@ -110,14 +115,24 @@ impl<'a> Plan<'a> {
         } else {
             plan.seen_meshes()
         };
+        if plan.deviation > 0.0 {
+            let stretches = plan.parts[0].1.mesh().triangles().par_iter();
+            let stretches = stretches.map(|corners| {
+                local_stretch(
+                    &view,
+                    corners.map(|corner| plan.parts[0].1.mesh().positions()[corner as usize]),
+                )
+            });
+            plan.curvature = plan.deviation * stretches.reduce(|| 0.0, f64::max);
+        }
         // One allowance for all parts, so that those that share an edge divide it alike.
         let rounding = (seen.iter().zip(plan.parts.iter()))
             .map(|(seen, (_, part))| {
                 rounding_bound(&view, part.mesh(), seen, stretch, wanted.precision)
             })
             .fold(0.0, f64::max);
-        let allowance = plan.allowance(aimed, aimed_length, plan.curvature + rounding, &seen);
-        let whole = plan.allowance(tolerance, plan.length, 0.0, &seen);
+        let allowance = plan.allowance(aimed, aimed_length, plan.curvature, rounding, &seen);
+        let whole = plan.allowance(tolerance, plan.length, 0.0, 0.0, &seen);
         let drafts = seen.into_iter().map(|seen| Draft {
             allowance,
             whole,
@@ -188,6 +203,7 @@ impl<'a> Plan<'a> {
             let stretch = self.view.stretch_bound(center, radius);
             let bounds = Bounds {
                 gap: velocity.gamma_beta() * gap * (1.0 + 4.0 * f64::EPSILON),
+                deviation: self.deviation,
                 curvature: self.curvature,
                 rounding: rounding_bound(&self.view, part.mesh(), &seen, stretch, wanted.precision),
             };
@@ -219,25 +235,68 @@ impl<'a> Plan<'a> {
             .collect()
     }
 
-    /// The gap `e` that a tolerance allows when `taken` of it is used for something else.
-    fn allowance(&self, tolerance: Tolerance, length: f64, taken: f64, seen: &[Mesh]) -> Allowance {
+    /// How far from a curved surface facets may be, at rest, if they were all that a tolerance is used for.
+    fn deviation_allowed(
+        &self,
+        tolerance: Tolerance,
+        length: f64,
+        rounding: f64,
+        mesh: &Mesh,
+    ) -> f64 {
+        let left = (length - rounding).max(0.5 * length);
+        let allowed = |corners: &[u32; 3]| {
+            let positions = corners.map(|corner| mesh.positions()[corner as usize]);
+            let here = match tolerance {
+                Tolerance::Angle(degrees) => {
+                    let offsets = positions.map(|position| position - self.view.observer_rest());
+                    let distances = offsets.map(|offset| self.view.seen_distance(offset));
+                    let nearest = distances.into_iter().fold(f64::INFINITY, f64::min);
+                    // The facets that this leads to are other ones: a little room for their distances.
+                    (0.9 * degrees.to_radians().sin() * nearest).max(left)
+                }
+                _ => left,
+            };
+            here / local_stretch(&self.view, positions)
+        };
+        let all = mesh.triangles().par_iter().map(allowed);
+        all.reduce(|| f64::INFINITY, f64::min)
+    }
+
+    /// The gap `e` that a tolerance allows when `curvature` and `rounding` use some of it.
+    fn allowance(
+        &self,
+        tolerance: Tolerance,
+        length: f64,
+        curvature: f64,
+        rounding: f64,
+        seen: &[Mesh],
+    ) -> Allowance {
         let velocity = self.view.relative_velocity();
         let (gamma, gamma_beta) = (velocity.gamma(), velocity.gamma_beta());
         match tolerance {
             Tolerance::Angle(degrees) => {
-                // (gamma beta e + taken) / (distance - gamma e - taken) <= s, solved for e.
+                // (gamma beta e + rounding) / (distance - gamma e - rounding) <= s, solved for e. What curvature takes
+                // goes with the distance.
                 let s = degrees.to_radians().sin();
+                let left = if curvature > 0.0 {
+                    (1.0 - CURVATURE_SHARE * (1.0 + s)).max(0.1)
+                } else {
+                    1.0
+                };
                 let share = ROOM / (gamma_beta + gamma * s);
                 let diagonal = length_of(Tolerance::Relative(1.0), seen);
                 Allowance::Angle {
                     view: self.view,
-                    share: s * share,
-                    less: (1.0 + s) * taken * share,
+                    share: s * left * share,
+                    less: (1.0 + s) * rounding * share,
                     least: LEAST_OF_ANGLE * diagonal * s * share,
                 }
             }
             // Where more is taken than there is, the gap gets a tenth all the same, and the certificate tells.
-            _ => Allowance::Everywhere(ROOM * (length - taken).max(0.1 * length) / gamma_beta),
+            _ => {
+                let left = (length - curvature - rounding).max(0.1 * length);
+                Allowance::Everywhere(ROOM * left / gamma_beta)
+            }
         }
     }
 }

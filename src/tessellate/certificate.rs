@@ -87,12 +87,25 @@ pub(crate) fn rounding_bound(
     }
 }
 
+/// A bound of how much anything near a triangle is stretched: in the ball that reaches twice as far from its
+/// middle as its corners, so that it holds a curved surface that passes through them.
+pub(crate) fn local_stretch(view: &View, [a, b, c]: [DVec3; 3]) -> f64 {
+    let middle = (a + b + c) / 3.0;
+    let reach = [a, b, c]
+        .map(|corner| corner.distance(middle))
+        .into_iter()
+        .fold(0.0, f64::max);
+    view.stretch_bound(middle, 2.0 * reach)
+}
+
 /// What a certificate adds up, as lengths in the observer's frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounds {
     /// `gamma beta e`, the largest of the mesh.
     pub(crate) gap: f64,
-    /// The distance of facets from a curved surface, stretched.
+    /// The distance of facets from a curved surface, at rest.
+    pub(crate) deviation: f64,
+    /// The same as seen, at most.
     pub(crate) curvature: f64,
     /// See [`rounding_bound`].
     pub(crate) rounding: f64,
@@ -137,11 +150,15 @@ impl Certificate {
             let [a, b, c] = positions.map(|position| position - view.observer_rest());
             let e = triangle_gap(a, b, c);
             let gap = gamma_beta * e * UP;
+            let curvature = match bounds.deviation {
+                0.0 => 0.0,
+                deviation => deviation * local_stretch(view, positions) * UP,
+            };
             let distances = [a, b, c].map(|offset| view.seen_distance(offset));
             let nearest = distances.into_iter().fold(f64::INFINITY, f64::min)
                 * (1.0 - 16.0 * f64::EPSILON)
                 - gamma * e * UP
-                - bounds.curvature
+                - curvature
                 - bounds.rounding;
             let sine = |length: f64| {
                 if length < nearest {
@@ -150,8 +167,8 @@ impl Certificate {
                     2.0
                 }
             };
-            let total = gap + bounds.curvature + bounds.rounding;
-            [gap, bounds.curvature, bounds.rounding, total].map(sine)
+            let total = gap + curvature + bounds.rounding;
+            [gap, curvature, bounds.rounding, total].map(sine)
         });
         let larger = |a: [f64; 4], b: [f64; 4]| [0, 1, 2, 3].map(|i| a[i].max(b[i]));
         let sines = sines.reduce(|| [0.0; 4], larger);
