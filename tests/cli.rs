@@ -651,3 +651,83 @@ fn help_names_every_command_and_the_units() {
         assert!(run.stdout_text().contains(word), "{word}\n{run}");
     }
 }
+
+#[test]
+fn accuracy_is_asked_for_in_three_units_and_certified() {
+    let workplace = Workplace::new();
+    let certificate = |flags: &str, status: i32| {
+        let run = workplace.run(&format!(
+            "export --example cube --steps 1 -o out.glb --report report.json {flags}"
+        ));
+        assert_eq!(run.status, status, "{run}");
+        let certificate = workplace.read_json("report.json")["objects"][0]["certificate"].clone();
+        assert_eq!(certificate["complete"], status == 0, "{run}\n{certificate}");
+        let json = glb_json(&workplace.read("out.glb"));
+        assert_eq!(json["nodes"][1]["extras"]["certificate"], certificate);
+        certificate
+    };
+    let default = certificate("", 0);
+    assert_eq!(default, certificate("--tolerance 1e-3", 0));
+    assert!(
+        certificate("--tolerance 1e-4", 0)["tolerance"].as_f64() < default["tolerance"].as_f64()
+    );
+    assert_eq!(certificate("--tolerance abs:0.02", 0)["tolerance"], 0.02);
+    let angle = certificate("--tolerance deg:0.5", 0);
+    assert_eq!(
+        (&angle["unit"], &angle["tolerance"]),
+        (&"degrees".into(), &0.5.into())
+    );
+    let untouched = certificate("--no-subdivide --tolerance 1e-6", 1);
+    assert_eq!(untouched["triangles_in"], untouched["triangles_out"]);
+    let budget = certificate("--tolerance 1e-6 --max-triangles 1000", 1);
+    assert!(budget["triangles_out"].as_u64() <= Some(1000), "{budget}");
+    for (wrong, words) in [
+        ("0", "expected a finite number > 0"),
+        ("deg:100", "90 degrees"),
+        ("mm:1", "abs:0.01"),
+    ] {
+        workplace
+            .run(&format!("export --tolerance {wrong} -o x.glb"))
+            .error(&["--tolerance", words]);
+    }
+    workplace.write("wrong.json", BALL.replace("0.1", "-0.1"));
+    workplace.run("check wrong.json").error(&[
+        "tolerance",
+        "the tolerance is -0.1, expected a finite number > 0",
+    ]);
+}
+
+/// What `check` says beforehand is what `export` makes, to within a half, on every built-in scene.
+#[test]
+fn triangles_are_predicted() {
+    let workplace = Workplace::new();
+    for scene in ["sphere", "cube", "lattice", "street", "snapshot"] {
+        for tolerance in ["1e-2", "1e-3", "1e-4"] {
+            let flags = format!("--example {scene} --tolerance {tolerance}");
+            let check = workplace.run(&format!("check {flags}")).success();
+            let last = check
+                .stdout_text()
+                .lines()
+                .last()
+                .unwrap_or_default()
+                .to_owned();
+            let digits = last.rsplit("about ").next().unwrap_or_default();
+            let digits: String = digits.chars().filter(char::is_ascii_digit).collect();
+            let predicted: f64 = digits.parse().expect("a count");
+            workplace
+                .run(&format!("export {flags} -o out.glb --report report.json"))
+                .success();
+            let report = workplace.read_json("report.json");
+            let objects = report["objects"].as_array().unwrap();
+            let made: f64 = objects
+                .iter()
+                .filter_map(|object| object["triangles"].as_f64())
+                .sum();
+            let ratio = predicted / made;
+            assert!(
+                (0.67..1.5).contains(&ratio),
+                "{flags}: {predicted} predicted, {made} made"
+            );
+        }
+    }
+}

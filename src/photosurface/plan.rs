@@ -10,8 +10,8 @@ use crate::light_cone::View;
 use crate::mesh::{Mesh, Part};
 use crate::scene::Tolerance;
 use crate::tessellate::{
-    Allowance, Bounds, Certificate, Counts, local_stretch, minimum_triangles, refine,
-    rounding_bound, triangle_gap,
+    Allowance, Bounds, Certificate, Counts, local_stretch, minimum_triangles, predicted_pieces,
+    refine, rounding_bound, triangle_gap,
 };
 
 /// What part of the tolerance of a curved shape its facets may use; the rest is for the gap between them.
@@ -30,10 +30,6 @@ const NEAREST: f64 = 0.01;
 /// Where an angle is the tolerance, no triangle is made smaller than this part of the mesh: where the observer
 /// touches a surface, any gap is seen under the same angle.
 const LEAST_OF_ANGLE: f64 = 1e-6;
-
-/// Refinement makes this many times as many triangles as theory asks for, about, and two more in every
-/// triangle that it divides.
-const TYPICAL_RATIO: f64 = 1.3;
 
 /// How one object is seen at one step, and what its tolerance allows.
 pub(super) struct Plan<'a> {
@@ -155,13 +151,11 @@ impl<'a> Plan<'a> {
                     return triangles.len() as f64;
                 }
                 let predict = |corners: &[u32; 3]| {
-                    let offsets =
-                        corners.map(|corner| part.mesh().positions()[corner as usize] - observer);
-                    let allowed = draft.allowance.between(&offsets);
-                    if triangle_gap(offsets[0], offsets[1], offsets[2]) <= allowed {
-                        return 1.0;
-                    }
-                    2.0 + TYPICAL_RATIO * minimum_triangles(offsets, allowed)
+                    let position = |corner: u32| part.mesh().positions()[corner as usize];
+                    predicted_pieces(
+                        corners.map(|corner| position(corner) - observer),
+                        &draft.allowance,
+                    )
                 };
                 triangles
                     .par_iter()

@@ -19,6 +19,12 @@ pub(super) fn needs_division(a: DVec3, b: DVec3, allowance: &Allowance) -> bool 
     edge_gap(a, b) > EDGE_SHARE * allowance.between(&[a, b])
 }
 
+/// About how many pieces an edge will be divided into: the gap of a piece goes with the square of its length.
+pub(super) fn predicted_edge_pieces(a: DVec3, b: DVec3, allowance: &Allowance) -> f64 {
+    let excess = edge_gap(a, b) / (EDGE_SHARE * allowance.between(&[a, b]));
+    excess.sqrt().ceil().max(1.0)
+}
+
 /// Where to divide the edge between two positions as seen by `observer`, as parameters from 0 at `a` to 1 at
 /// `b`, in order; empty where it need not be divided.
 ///

@@ -1,6 +1,9 @@
-//! The fewest triangles that theory allows for a tolerance.
+//! The fewest triangles that theory allows for a tolerance, and about how many it will take.
 
 use glam::DVec3;
+
+use super::edge::predicted_edge_pieces;
+use super::{Allowance, triangle_gap};
 
 /// `1.5 sqrt(3)`: an equilateral triangle whose middle has the gap `e` has the area `1.5 sqrt(3) e` in the metric
 /// in which gaps are measured.
@@ -8,6 +11,9 @@ const AREA_OF_GAP: f64 = 2.598_076_211_353_316;
 
 /// Where a triangle is smaller than this against its distance, one quadrature is enough.
 const SMALL: f64 = 0.5;
+
+/// Away from boundaries refinement makes about this many times as many triangles as theory asks for.
+const TYPICAL_RATIO: f64 = 1.1;
 
 /// Against a triangle that reaches the observer: halving stops here, where next to nothing is left.
 const MAX_HALVINGS: u32 = 60;
@@ -32,6 +38,23 @@ pub(crate) fn minimum_triangles([a, b, c]: [DVec3; 3], allowed: f64) -> f64 {
         return 0.0;
     }
     0.5 * height_times_twice_area * mean_inverse_square([a, b, c], 0) / (AREA_OF_GAP * allowed)
+}
+
+/// About how many triangles one will be divided into.
+///
+/// A polygon with `b` points on its boundary and `i` inside is made of `b - 2 + 2 i` triangles: the boundary's share
+/// is known, and inside there are about as many triangles as theory asks for.
+pub(crate) fn predicted_pieces(offsets: [DVec3; 3], allowance: &Allowance) -> f64 {
+    let [a, b, c] = offsets;
+    let sides = [(a, b), (b, c), (c, a)];
+    let boundary = sides.map(|(from, to)| predicted_edge_pieces(from, to, allowance));
+    let allowed = allowance.between(&offsets);
+    let inside = if triangle_gap(a, b, c) <= allowed {
+        0.0
+    } else {
+        TYPICAL_RATIO * minimum_triangles(offsets, allowed)
+    };
+    boundary.iter().sum::<f64>() - 2.0 + inside
 }
 
 /// The mean of `1 / r^2` over a triangle.

@@ -20,5 +20,5 @@ pub(crate) use allowance::Allowance;
 pub(crate) use certificate::{Bounds, Counts, local_stretch, rounding_bound};
 pub use certificate::{Certificate, Precision};
 pub use gap::{edge_gap, triangle_gap, triangle_gap_place};
-pub(crate) use minimum::minimum_triangles;
+pub(crate) use minimum::{minimum_triangles, predicted_pieces};
 pub(crate) use refine::refine;
