@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use common::Random;
 use common::refining::{Sighting, model, plate};
-use photosurface::{DVec3, Source, Tolerance, Velocity, triangle_gap};
+use photosurface::{DVec3, Source, Tolerance, Velocity};
 
 const REPEATS: usize = 7;
 
@@ -32,7 +32,7 @@ fn main() {
     let velocity = Velocity::from_beta(0.6, DVec3::NEG_Z).expect("slower than light");
     let mut random = Random::new(1);
 
-    println!("     h   e_tol    1:4 split   triangles      N_min   ratio   triangles/s");
+    println!("     h   e_tol   triangles      N_min   ratio   triangles/s");
     for h in [1.0, 0.1, 0.01, 0.001] {
         for e in [1e-3, 1e-4, 1e-5] {
             let tolerance = Tolerance::Absolute(e * velocity.gamma_beta());
@@ -51,8 +51,7 @@ fn main() {
             let certificate = &sighted.certificate;
             let rate = sighted.triangle_count() as f64 / times[REPEATS / 2].as_secs_f64();
             println!(
-                "{h:6} {e:7.0e} {:12} {:11} {:10.0} {:7.3} {rate:13.0}{}",
-                uniform(h, e),
+                "{h:6} {e:7.0e} {:11} {:10.0} {:7.3} {rate:13.0}{}",
                 sighted.triangle_count(),
                 certificate.minimum_triangles,
                 certificate.ratio,
@@ -74,24 +73,4 @@ fn main() {
             }
         }
     }
-}
-
-/// How many triangles it takes when all are divided into four as long as the worst needs it.
-fn uniform(h: f64, e: f64) -> u64 {
-    let mut levels = 0;
-    // The worst are around the foot of the perpendicular, which is a corner of all levels but the first.
-    let fits = |levels: u32| {
-        let side = 2.0 / f64::from(1u32 << levels);
-        let corner = |x: f64, y: f64| DVec3::new(x, y, h);
-        let middle = if levels == 0 { -1.0 } else { 0.0 };
-        let triangle = |to: [[f64; 2]; 3]| {
-            let [a, b, c] = to.map(|[x, y]| corner(middle + x * side, middle + y * side));
-            triangle_gap(a, b, c)
-        };
-        triangle([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]) <= e
-    };
-    while !fits(levels) {
-        levels += 1;
-    }
-    2 * 4u64.pow(levels)
 }
