@@ -11,9 +11,9 @@ use photosurface::{DVec3, PhotosurfaceMap, Velocity};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("  beta   front   side   looks turned by   side is long   and leans by");
     for beta in [0.1, 0.5, 0.8, 0.9, 0.99] {
-        // The cube flies along +x, so the observer moves along -x; it is seen straight ahead along z.
+        // The cube flies along +x, so the observer moves along -x; it is seen at right angles, along -z.
         let map = PhotosurfaceMap::new(&Velocity::from_beta(beta, DVec3::NEG_X)?);
-        let toward_cube = DVec3::new(0.0, 0.0, -1000.0);
+        let toward_cube = map.rest_offset(DVec3::new(0.0, 0.0, -1000.0));
         let jacobian = map.jacobian(toward_cube);
         let front = jacobian * DVec3::X;
         let side = jacobian * DVec3::NEG_Z;

@@ -297,3 +297,52 @@ fn extended<T: Copy + Send + Sync>(
         .chain(origins.par_iter().map(make))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A quad whose texture coordinates, colours and tangents are affine in position: so are those of every new
+    /// vertex; the old ones stay first, and triangles keep their side.
+    #[test]
+    fn attributes_are_interpolated_where_the_new_vertices_lie() {
+        let positions = vec![
+            DVec3::new(-1.0, -1.0, -0.2),
+            DVec3::new(1.0, -1.0, -0.3),
+            DVec3::new(1.0, 1.0, -0.4),
+            DVec3::new(-1.0, 1.0, -0.3),
+        ];
+        let uv = |p: &DVec3| Vec2::new(0.5 + 0.25 * p.x as f32, 2.0 - p.y as f32);
+        let color =
+            |p: &DVec3| Vec4::new(0.5 + 0.5 * p.x as f32, 0.25, 0.5 - 0.5 * p.y as f32, 1.0);
+        let normal = DVec3::new(0.05, 0.05, 1.0).normalize();
+        let mesh = Mesh::new(positions.clone(), vec![[0, 1, 2], [0, 2, 3]])
+            .and_then(|mesh| mesh.with_normals(vec![normal; 4]))
+            .and_then(|mesh| mesh.with_tangents(vec![DVec3::X.extend(-1.0); 4]))
+            .and_then(|mesh| mesh.with_texture_coordinates(positions.iter().map(uv).collect()))
+            .and_then(|mesh| mesh.with_colors(positions.iter().map(color).collect()))
+            .unwrap();
+        let refined = refine(&mesh, DVec3::ZERO, &Allowance::Everywhere(1e-4));
+        assert!(refined.complete && refined.gap <= 1e-4);
+        let made = refined.mesh;
+        assert!(made.positions().len() > 500);
+        assert_eq!(made.positions()[..4], positions[..]);
+        for (vertex, position) in made.positions().iter().enumerate() {
+            assert!((made.texture_coordinates()[0][vertex] - uv(position)).length() < 1e-6);
+            assert!((made.colors().unwrap()[vertex] - color(position)).length() < 1e-6);
+            assert!((made.normals().unwrap()[vertex] - normal).length() < 1e-15);
+            assert_eq!(made.tangents().unwrap()[vertex], DVec3::X.extend(-1.0));
+        }
+        let mut area = 0.0;
+        for corners in made.triangles() {
+            let [a, b, c] = corners.map(|corner| made.positions()[corner as usize]);
+            let turned = (b - a).cross(c - a).dot(DVec3::Z);
+            assert!(turned > 0.0, "a triangle is turned over or has no area");
+            area += 0.5 * turned;
+        }
+        assert!(
+            (area - 4.0).abs() < 1e-12,
+            "the pieces cover the quad once: {area}"
+        );
+    }
+}
