@@ -39,7 +39,7 @@ pub use mesh::{
     Lattice, Length, Material, Mesh, MeshError, Model, Part, Rod, Sampler, Shape, ShapeError,
     Sphere, Texture, Torus, Wrap,
 };
-pub use photosurface::{Facts, Photosurface, SceneFacts, Stage, Wanted, step_label};
+pub use photosurface::{Facts, Photosurface, Prediction, SceneFacts, Stage, Wanted, step_label};
 pub use scene::{
     BUILT_IN_SCENES, BuiltInScene, InvalidScene, Object, Observer, Scene, SceneError, Source,
     Tolerance, ToleranceError, even_steps,

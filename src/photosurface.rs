@@ -1,5 +1,6 @@
 //! The pipeline: a scene and its models in, the photosurface of every part at every step out.
 
+mod budget;
 mod facts;
 mod plan;
 
@@ -16,6 +17,7 @@ use crate::spacetime::Velocity;
 use crate::tessellate::Precision;
 use plan::{Plan, Surface};
 
+pub use budget::Prediction;
 pub use facts::{Facts, SceneFacts};
 
 /// Vertices a thread takes at a time: enough to outweigh handing them over.
@@ -74,8 +76,6 @@ pub struct Wanted {
     /// Whether meshes are refined until they are within the tolerance; if not, every vertex stays what it is and
     /// the certificate tells how far off the mesh is.
     pub subdivide: bool,
-    /// Aim at this many times the tolerance; certificates are still against the tolerance itself.
-    pub loosening: f64,
     /// How many digits the file will have.
     pub precision: Precision,
 }
@@ -86,7 +86,6 @@ impl Default for Wanted {
         Self {
             doppler_factors: false,
             subdivide: true,
-            loosening: 1.0,
             precision: Precision::Single,
         }
     }
@@ -99,6 +98,8 @@ struct Placed {
     parts: Vec<(String, Part)>,
     /// Where they are those of a shape.
     shaped: Option<Shaped>,
+    /// Aim at this many times the tolerance.
+    loosening: f64,
 }
 
 /// A shape, to be made as fine as its tolerance asks for.
@@ -141,6 +142,7 @@ impl Stage {
             objects.push(Placed {
                 parts: parts.collect(),
                 shaped: Shaped::of(object),
+                loosening: 1.0,
             });
         }
         Self {
@@ -173,20 +175,6 @@ impl Stage {
         self.view(object, 0.0).relative_velocity()
     }
 
-    /// About how many triangles the photosurfaces of each object will have at one step, in the order of the
-    /// scene; known in a fraction of the time that it takes to make them.
-    ///
-    /// # Panics
-    ///
-    /// If the scene has no such step.
-    pub fn predicted_triangles(&self, step: usize, wanted: Wanted) -> Vec<f64> {
-        let objects = self.scene.objects().iter().zip(&self.objects);
-        let plans = objects.map(|(object, placed)| self.plan(object, placed, step, wanted));
-        plans
-            .map(|plan| plan.predicted_triangles(wanted.subdivide))
-            .collect()
-    }
-
     /// The photosurfaces of all parts at one step, in the order of the scene.
     ///
     /// # Panics
@@ -204,6 +192,23 @@ impl Stage {
                 material: surface.part.material.clone(),
                 facts: self.part_facts(object, &surface, step, &view),
                 mesh: surface.seen,
+            })
+        })
+    }
+
+    /// Whether all that is seen at one step is well within the range of `f32`, so that nothing can overflow or
+    /// vanish; a quick look that may say no without need.
+    pub(crate) fn is_within_f32(&self, step: usize) -> bool {
+        const RANGE: std::ops::Range<f64> = 1e-30..1e30;
+        let mut objects = self.scene.objects().iter().zip(&self.objects);
+        objects.all(|(object, placed)| {
+            let view = self.view(object, self.scene.steps()[step]);
+            let stretch = view.relative_velocity().rapidity().exp();
+            placed.parts.iter().all(|(_, part)| {
+                let (low, high) = part.mesh().bounds().unwrap_or_default();
+                let away = (low - view.observer_rest()).length() + (high - low).length();
+                RANGE.contains(&(away * stretch))
+                    && RANGE.contains(&((high - low).max_element() / stretch))
             })
         })
     }

@@ -226,7 +226,9 @@ fn error_within_bound_within_tolerance() {
                     .stage(Source::Model(
                         common::refining::model(std::slice::from_ref(&mesh)).into(),
                     ))
-                    .predicted_triangles(0, sighting.wanted)[0];
+                    .predictions(sighting.wanted)[0];
+                assert!(predicted.reachable, "{name}, {sighting:?}");
+                let predicted = predicted.triangles;
                 if predicted > 20_000.0 {
                     continue;
                 }
@@ -505,18 +507,22 @@ fn without_subdivision_the_bound_is_still_true() {
 
 #[test]
 fn a_looser_aim_makes_fewer_triangles_and_says_so() {
-    let mut sighting = Sighting::new(DVec3::ZERO, moving(0.9), Tolerance::Absolute(1e-4));
+    let sighting = Sighting::new(DVec3::ZERO, moving(0.9), Tolerance::Absolute(1e-4));
     let tight = sighting.of_one(&plate(0.2));
-    sighting.wanted.loosening = 10.0;
-    let loose = sighting.of_one(&plate(0.2));
+    let budget = tight.triangle_count() as u64 / 10;
+    let source = Source::Model(common::refining::model(&[plate(0.2)]).into());
+    let (stage, loosening) = sighting
+        .stage(source)
+        .within_budget(sighting.wanted, budget);
+    assert!(loosening[0] > 10.0 && loosening[0] < 30.0, "{loosening:?}");
+    let loose = sighting.sighted(&stage).pop().expect("one part");
+    assert!(loose.triangle_count() as u64 <= budget);
     let (tight_count, loose_count) = (tight.triangle_count() as f64, loose.triangle_count() as f64);
-    assert!(
-        loose_count < 0.2 * tight_count,
-        "{loose_count} {tight_count}"
-    );
+    assert!(loose_count > 0.03 * tight_count, "{loose_count}");
     assert!(tight.certificate.complete && !loose.certificate.complete);
     assert_eq!(loose.certificate.tolerance, 1e-4);
-    assert!(loose.certificate.total <= 1e-3, "{:?}", loose.certificate);
+    let aimed = loosening[0] * 1e-4;
+    assert!(loose.certificate.total <= aimed, "{:?}", loose.certificate);
     let minimum = |sighted: &Sighted| sighted.certificate.minimum_triangles;
     assert_eq!(minimum(&loose), minimum(&tight));
     sighting.assert_contained(&loose, 10, &mut Random::new(6));

@@ -1,19 +1,13 @@
 //! Flags that say how accurate the result is to be, and what that may cost.
 
-use anyhow::{Context, bail};
+use anyhow::{Context, bail, ensure};
 use clap::Args;
-use photosurface::{Facts, Precision, Scene, Stage, Tolerance, Wanted};
+use photosurface::{Facts, Precision, Prediction, Scene, Stage, Tolerance, Wanted};
 
 use super::messages::{Verbosity, grouped};
 
-/// Room for predictions: they are good to about a half (`tests/cli.rs`).
-const PREDICTION_ROOM: f64 = 1.6;
-
-/// Of more steps than this a prediction looks at as many, evenly spread.
-const STEPS_LOOKED_AT: usize = 32;
-
-/// A budget below what is there before any refinement fits no tolerance.
-const MAX_LOOSENING: f64 = 1e9;
+/// Of more objects than this only so many are named.
+const NAMED: usize = 4;
 
 /// How accurate the result is to be, and what that may cost.
 #[derive(Debug, Args)]
@@ -21,37 +15,47 @@ const MAX_LOOSENING: f64 = 1e9;
 pub(super) struct AccuracyArgs {
     /// How far a photosurface may be from the true one: 1e-3 (a fraction of its diagonal), abs:0.01 (a length in
     /// scene units) or deg:0.02 (an angle seen by the observer, in degrees) [default: 1e-3]
-    #[arg(long, value_name = "T", value_parser = tolerance)]
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<Tolerance>,
     /// Leave every vertex what it is; the certificate still tells how far off the mesh is
     #[arg(long)]
     no_subdivide: bool,
     /// Most triangles of all photosurfaces together; if the tolerance needs more, the largest gaps are closed
-    /// first and the result is not certified
-    #[arg(long, value_name = "N", default_value_t = 20_000_000)]
+    /// first and the result is not certified. Triangles that a source has always stay, even if they are more
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 20_000_000,
+        allow_negative_numbers = true
+    )]
     max_triangles: u64,
     /// Level of detail: a file for each of these tolerances, out_lod0.glb, out_lod1.glb, ...
-    #[arg(long, value_name = "T,T,...", value_delimiter = ',', value_parser = tolerance, conflicts_with = "tolerance")]
+    #[arg(long, value_name = "T,T,...", value_delimiter = ',', value_parser = tolerance, allow_hyphen_values = true,
+        conflicts_with = "tolerance")]
     lod: Vec<Tolerance>,
 }
 
 impl AccuracyArgs {
     /// The scene at each level of detail, with what to add to the names of files.
-    pub(super) fn levels(&self, scene: Scene) -> Vec<(String, Scene)> {
+    pub(super) fn levels(&self, scene: Scene) -> anyhow::Result<Vec<(String, Scene)>> {
         if !self.lod.is_empty() {
+            for (level, tolerance) in self.lod.iter().enumerate() {
+                let twice = self.lod[..level].contains(tolerance);
+                ensure!(!twice, "--lod names the tolerance {tolerance} twice");
+            }
             let level = |(level, tolerance): (usize, &Tolerance)| {
                 (
                     format!("_lod{level}"),
                     scene.clone().with_tolerance_for_all(*tolerance),
                 )
             };
-            return self.lod.iter().enumerate().map(level).collect();
+            return Ok(self.lod.iter().enumerate().map(level).collect());
         }
         let scene = match self.tolerance {
             Some(tolerance) => scene.with_tolerance_for_all(tolerance),
             None => scene,
         };
-        vec![(String::new(), scene)]
+        Ok(vec![(String::new(), scene)])
     }
 
     /// How many levels of detail there are.
@@ -59,75 +63,104 @@ impl AccuracyArgs {
         self.lod.len().max(1)
     }
 
-    /// What is wanted of the stage's photosurfaces, within the budget; tells what the tolerance takes.
-    pub(super) fn wanted(
-        &self,
-        stage: &Stage,
-        precision: Precision,
-        verbosity: Verbosity,
-    ) -> Wanted {
-        let wanted = Wanted {
+    /// What is wanted of a stage's photosurfaces.
+    pub(super) fn wanted(&self, precision: Precision) -> Wanted {
+        Wanted {
             subdivide: !self.no_subdivide,
             precision,
             ..Wanted::default()
-        };
-        let predicted = predicted_total(stage, wanted);
-        let needed = grouped(predicted.round() as usize);
-        verbosity.detail(format_args!("about {needed} triangles"));
-        let most = self.max_triangles as f64;
-        if !wanted.subdivide || PREDICTION_ROOM * predicted <= most {
-            return wanted;
         }
-        // Triangles go with the inverse of the tolerance, but for those that are there anyway.
-        let loosened = |loosening| Wanted {
-            loosening,
-            ..wanted
-        };
-        let (mut loosening, mut excess) = (1.0, PREDICTION_ROOM * predicted / most);
-        while excess > 1.0 && loosening < MAX_LOOSENING {
-            loosening *= excess.max(1.5);
-            excess = PREDICTION_ROOM * predicted_total(stage, loosened(loosening)) / most;
+    }
+
+    /// The stage with aims that are within the budget, and what it will take; tells what the tolerance needs.
+    pub(super) fn within_budget(
+        &self,
+        stage: Stage,
+        wanted: Wanted,
+        verbosity: Verbosity,
+    ) -> (Stage, Vec<Prediction>) {
+        let predictions = stage.predictions(wanted);
+        let needed = total(&predictions);
+        verbosity.detail(format_args!("about {needed}"));
+        let (stage, loosening) = stage.within_budget(wanted, self.max_triangles);
+        if loosening.iter().all(|&times| times == 1.0) {
+            return (stage, predictions);
         }
-        let advice = if excess > 1.0 {
-            "no tolerance would fit".to_owned()
-        } else {
-            let scene = stage.scene();
-            let objects = scene.objects().iter();
-            let fitting =
-                objects.map(|object| scene.tolerance(object).times(loosening).to_string());
-            let mut fitting: Vec<_> = fitting.collect();
-            fitting.dedup();
-            format!("--tolerance {} would fit", fitting.join(", "))
+        let scene = stage.scene();
+        let loosened = scene.objects().iter().zip(&loosening);
+        let loosened: Vec<_> = loosened
+            .filter(|&(_, &times)| times > 1.0)
+            .map(|(object, &times)| {
+                let fitting = scene.tolerance(object).times(times);
+                (&object.name, fitting.to_string())
+            })
+            .collect();
+        let mut predictions = stage.predictions(wanted);
+        for (prediction, times) in predictions.iter_mut().zip(&loosening) {
+            prediction.reachable &= *times == 1.0;
+        }
+        let advice = match &loosened[..] {
+            _ if predicted(&predictions) > self.max_triangles as f64 => {
+                "no tolerance would fit".to_owned()
+            }
+            [(_, fitting)] if loosening.len() == 1 => format!("--tolerance {fitting} would fit"),
+            several => {
+                let named = several.iter().take(NAMED);
+                let named: Vec<_> = named
+                    .map(|(name, fitting)| format!("{fitting} for \"{name}\""))
+                    .collect();
+                let rest = match several.len() - named.len() {
+                    0 => String::new(),
+                    rest => format!(" and looser ones for {rest} more"),
+                };
+                format!("the tolerance {}{rest} would fit", named.join(", "))
+            }
         };
         verbosity.note(format_args!(
-            "the tolerance needs about {needed} triangles, more than --max-triangles {}; {advice}",
-            self.max_triangles,
+            "the tolerance needs about {needed}, more than --max-triangles {} leaves room for; {advice}",
+            grouped(self.max_triangles as usize),
         ));
-        loosened(loosening)
+        (stage, predictions)
     }
-}
 
-/// About how many triangles the photosurfaces of each object will have, all steps together; of many steps only
-/// some are looked at.
-pub(super) fn predicted_triangles(stage: &Stage, wanted: Wanted) -> Vec<f64> {
-    let steps = stage.scene().steps().len();
-    let looked_at = steps.min(STEPS_LOOKED_AT);
-    let mut sums = vec![0.0; stage.scene().objects().len()];
-    for index in 0..looked_at {
-        let step = index * (steps - 1) / (looked_at - 1).max(1);
-        for (sum, triangles) in sums.iter_mut().zip(stage.predicted_triangles(step, wanted)) {
-            *sum += triangles * steps as f64 / looked_at as f64;
+    /// Whether the photosurfaces are within their tolerances and the budget; says so where they are not.
+    pub(super) fn is_kept(&self, made: &[Facts], verbosity: Verbosity) -> bool {
+        let triangles: usize = made.iter().map(|facts| facts.triangles).sum();
+        let within_budget = triangles as u64 <= self.max_triangles;
+        if !within_budget {
+            verbosity.note(format_args!(
+                "{} triangles are more than --max-triangles {}: those that there are before any subdivision stay",
+                grouped(triangles),
+                grouped(self.max_triangles as usize)
+            ));
         }
+        all_certified(made, verbosity) && within_budget
     }
-    sums
 }
 
-fn predicted_total(stage: &Stage, wanted: Wanted) -> f64 {
-    predicted_triangles(stage, wanted).iter().sum()
+/// Such as "1,200 triangles".
+pub(super) fn total(predictions: &[Prediction]) -> String {
+    let triangles = predicted(predictions);
+    let plural = if triangles.round() == 1.0 { "" } else { "s" };
+    format!("{} triangle{plural}", grouped_number(triangles))
+}
+
+/// Such as "1,200"; what is beyond counting as "2e302".
+pub(super) fn grouped_number(number: f64) -> String {
+    if number < 1e15 {
+        grouped(number.round() as usize)
+    } else {
+        format!("{number:.0e}")
+    }
+}
+
+fn predicted(predictions: &[Prediction]) -> f64 {
+    let triangles = predictions.iter().map(|prediction| prediction.triangles);
+    triangles.sum()
 }
 
 /// Says which photosurfaces are not certified; `true` if all are.
-pub(super) fn all_certified(made: &[Facts], verbosity: Verbosity) -> bool {
+fn all_certified(made: &[Facts], verbosity: Verbosity) -> bool {
     let open: Vec<_> = made
         .iter()
         .filter(|facts| !facts.certificate.complete)
@@ -138,8 +171,8 @@ pub(super) fn all_certified(made: &[Facts], verbosity: Verbosity) -> bool {
     };
     let certificate = &worst.certificate;
     verbosity.note(format_args!(
-        "{} of {} photosurfaces are not within the tolerance; the worst is \"{}\", proven within {:.3e} where {:.3e} \
-         was asked for ({}: gap {:.3e}, curvature {:.3e}, rounding {:.3e})",
+        "{} of {} photosurfaces are not within the tolerance; the worst, against what \
+         was asked for, is \"{}\", proven within {:.3e} where that was {:.3e} ({}: gap {:.3e}, curvature {:.3e}, rounding {:.3e})",
         open.len(),
         made.len(),
         worst.name,

@@ -2,9 +2,9 @@
 
 use std::io::Write;
 
-use photosurface::{Format, Precision, Stage, Wanted};
+use photosurface::{Format, Precision, Prediction, Stage};
 
-use super::accuracy::{AccuracyArgs, predicted_triangles};
+use super::accuracy::{AccuracyArgs, grouped_number, total};
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, counted, grouped, print};
@@ -33,7 +33,7 @@ pub(super) struct CheckArgs {
 pub(super) fn run(args: &CheckArgs) -> anyhow::Result<()> {
     let verbosity = Verbosity::new(args.quiet, args.verbose);
     let input = Input::read(&args.input, &args.observer, verbosity)?;
-    for (_, scene) in args.accuracy.levels(input.scene) {
+    for (_, scene) in args.accuracy.levels(input.scene)? {
         let stage = Stage::new(scene, input.models.clone());
         for (name, part) in stage.objects().flat_map(|(_, parts)| parts) {
             verbosity.detail(format_args!(
@@ -45,23 +45,33 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<()> {
         if let Err(error) = Format::Glb.least_size(&stage, stage.scene().steps().len()) {
             verbosity.note(error);
         }
-        let wanted = args.accuracy.wanted(&stage, Precision::Single, verbosity);
-        print(|out| table(&stage, wanted, out))?;
+        if let Err(error) = Format::Glb.check_range(&stage) {
+            verbosity.note(error);
+        }
+        let wanted = args.accuracy.wanted(Precision::Single);
+        let (stage, predictions) = args.accuracy.within_budget(stage, wanted, verbosity);
+        print(|out| table(&stage, &predictions, out))?;
     }
     Ok(())
 }
 
-fn table(stage: &Stage, wanted: Wanted, out: &mut dyn Write) -> anyhow::Result<()> {
+fn table(stage: &Stage, predictions: &[Prediction], out: &mut dyn Write) -> anyhow::Result<()> {
     let scene = stage.scene();
     let steps = scene.steps().len();
-    let predicted = predicted_triangles(stage, wanted);
     writeln!(
         out,
-        "{:<20} {:>6} {:>12} {:>13} {:>10} {:>12} {:>16}",
-        "object", "parts", "triangles in", "gamma", "rapidity", "tolerance", "triangles out"
+        "{:<20} {:>6} {:>12} {:>13} {:>10} {:>12} {:>16} {:>9}",
+        "object",
+        "parts",
+        "triangles in",
+        "gamma",
+        "rapidity",
+        "tolerance",
+        "triangles out",
+        "certified"
     )?;
     let mut parts_of_all = 0;
-    for ((object, parts), triangles_out) in stage.objects().zip(&predicted) {
+    for ((object, parts), prediction) in stage.objects().zip(predictions) {
         let triangles: usize = parts
             .iter()
             .map(|(_, part)| part.mesh().triangles().len())
@@ -69,14 +79,15 @@ fn table(stage: &Stage, wanted: Wanted, out: &mut dyn Write) -> anyhow::Result<(
         let relative = stage.relative_velocity(object);
         writeln!(
             out,
-            "{:<20} {:>6} {:>12} {:>13.6e} {:>10.6} {:>12} {:>16}",
+            "{:<20} {:>6} {:>12} {:>13.6e} {:>10.6} {:>12} {:>16} {:>9}",
             object.name,
             parts.len(),
             grouped(triangles),
             relative.gamma(),
             relative.rapidity(),
             scene.tolerance(object).to_string(),
-            format!("about {}", grouped(triangles_out.round() as usize)),
+            format!("about {}", grouped_number(prediction.triangles)),
+            if prediction.reachable { "yes" } else { "no" },
         )?;
         parts_of_all += parts.len();
     }
@@ -85,7 +96,7 @@ fn table(stage: &Stage, wanted: Wanted, out: &mut dyn Write) -> anyhow::Result<(
         "{}: {}, about {}",
         counted(steps, "step"),
         counted(parts_of_all * steps, "photosurface"),
-        counted(predicted.iter().sum::<f64>().round() as usize, "triangle")
+        total(predictions)
     )?;
     Ok(())
 }

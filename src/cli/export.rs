@@ -15,7 +15,7 @@ use photosurface::{
 };
 
 use super::Status;
-use super::accuracy::{AccuracyArgs, all_certified};
+use super::accuracy::AccuracyArgs;
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print, size};
@@ -69,7 +69,7 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     let steps = input.scene.steps().len();
     let levels: Vec<Level> = args
         .accuracy
-        .levels(input.scene)
+        .levels(input.scene)?
         .into_iter()
         .map(|(suffix, scene)| Level {
             scene,
@@ -86,14 +86,16 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     let mut status = Status::Done;
     for level in levels {
         let stage = Stage::new(level.scene, input.models.clone());
+        let of_file = || level.files[0].display().to_string();
         format
             .least_size(&stage, if output.split { 1 } else { steps })
-            .with_context(|| level.files[0].display().to_string())?;
+            .with_context(of_file)?;
+        format.check_range(&stage).with_context(of_file)?;
         let clock = clock.clone();
         let certified = export(
             args,
             format,
-            &stage,
+            stage,
             &level.files,
             level.report.as_deref(),
             clock,
@@ -117,7 +119,7 @@ struct Level {
 fn export(
     args: &ExportArgs,
     format: Format,
-    stage: &Stage,
+    stage: Stage,
     files: &[PathBuf],
     report: Option<&Path>,
     mut clock: Clock,
@@ -129,11 +131,12 @@ fn export(
     };
     let wanted = Wanted {
         doppler_factors: format == Format::Ply,
-        ..args.accuracy.wanted(stage, precision, verbosity)
+        ..args.accuracy.wanted(precision)
     };
+    let (stage, _) = args.accuracy.within_budget(stage, wanted, verbosity);
     clock.stop("predict");
 
-    let progress = progress_bar(stage, verbosity);
+    let progress = progress_bar(&stage, verbosity);
     let steps = 0..stage.scene().steps().len();
     let mut made = Vec::new();
     let mut batch = Vec::new();
@@ -148,19 +151,19 @@ fn export(
         // A file for each step is written as soon as it can be, so that memory does not grow with them.
         if args.output.split {
             let batch = std::mem::take(&mut batch);
-            write_file(&files[step], format, stage, &batch, || Ok(()))?;
+            write_file(&files[step], format, &stage, &batch, || Ok(()))?;
             clock.stop("write");
         }
     }
     let write_report = |clock: &Clock| match report {
-        Some(report) => write_report(report, stage, &made, clock),
+        Some(report) => write_report(report, &stage, &made, clock),
         None => Ok(()),
     };
     if args.output.split {
         write_report(&clock)?;
     } else {
         // Before the mesh appears: where the report fails, nothing is written.
-        write_file(&files[0], format, stage, &batch, || {
+        write_file(&files[0], format, &stage, &batch, || {
             clock.stop("write");
             write_report(&clock)
         })?;
@@ -173,7 +176,7 @@ fn export(
     if !is_stdout(&files[0]) {
         verbosity.result(summary(files, format, &made));
     }
-    Ok(all_certified(&made, verbosity))
+    Ok(args.accuracy.is_kept(&made, verbosity))
 }
 
 /// `out.glb` and `_lod0` make `out_lod0.glb`; a stream stays what it is.

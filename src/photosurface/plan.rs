@@ -7,11 +7,11 @@ use rayon::prelude::*;
 
 use super::{Placed, Wanted, seen_mesh};
 use crate::light_cone::View;
-use crate::mesh::{Mesh, Part};
+use crate::mesh::{Mesh, Part, Shape};
 use crate::scene::Tolerance;
 use crate::tessellate::{
-    Allowance, Bounds, Certificate, Counts, local_stretch, minimum_triangles, predicted_pieces,
-    refine, rounding_bound, triangle_gap,
+    Allowance, Bounds, Certificate, Counts, Precision, local_stretch, minimum_triangles,
+    predicted_pieces, refine, rounding_bound, triangle_gap,
 };
 
 /// What part of the tolerance of a curved shape its facets may use; the rest is for the gap between them.
@@ -23,6 +23,10 @@ const CURVATURE_SHARE: f64 = 0.7;
 /// What is left of a tolerance for the gap, for the sums of its certificate.
 const ROOM: f64 = 0.999;
 
+/// What part of a tolerance the gap gets where curvature and rounding take more than there is; the certificate
+/// tells.
+const LEAST_FOR_GAP: f64 = 0.1;
+
 /// Where an angle is the tolerance of a curved shape, it is one at this part of the shape's size at least: an
 /// observer who touches it sees any facet under a large angle.
 const NEAREST: f64 = 0.01;
@@ -31,28 +35,54 @@ const NEAREST: f64 = 0.01;
 /// touches a surface, any gap is seen under the same angle.
 const LEAST_OF_ANGLE: f64 = 1e-6;
 
+/// Round shapes of more facets are not made to predict what refinement will do to them.
+const FACETS_MADE_TO_PREDICT: u64 = 20_000;
+
 /// How one object is seen at one step, and what its tolerance allows.
 pub(super) struct Plan<'a> {
     view: View,
+    placed: &'a Placed,
     tolerance: Tolerance,
     /// The tolerance as a length; of an angle, at the nearest vertex.
     length: f64,
-    /// In the object's rest frame, with names in files; those of a curved shape fine enough for the tolerance.
-    parts: Cow<'a, [(String, Part)]>,
+    /// What to aim at: the tolerance, or a looser one.
+    aimed: Tolerance,
+    aimed_length: f64,
+    /// A shape as fine as the tolerance asks for; `None` where the parts are what they are.
+    shape: Option<Shape>,
     /// Of facets from a curved surface, at rest; zero for what is flat.
     deviation: f64,
-    /// The same as seen, at most.
-    curvature: f64,
-    /// For each part: the seen mesh without refinement, its rounding, and what is allowed.
-    drafts: Vec<Draft>,
+    /// The parts as they were placed, as seen.
+    seen: Vec<Mesh>,
+    precision: Precision,
 }
 
-struct Draft {
-    seen: Mesh,
+/// What an object will take, and whether its tolerance can be kept at all.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Foresight {
+    pub(super) triangles: f64,
+    pub(super) reachable: bool,
+}
+
+/// Parts of the object at rest and as seen, before any refinement, and what is allowed for that.
+struct Draft<'a> {
+    /// With names in files.
+    parts: Cow<'a, [(String, Part)]>,
+    seen: Vec<Mesh>,
+    limits: Limits,
+}
+
+/// What a tolerance allows. One for all parts, so that those that share an edge divide it alike.
+#[derive(Clone, Copy)]
+struct Limits {
+    /// Of the photosurface of the facets from that of a curved surface, at most.
+    curvature: f64,
     /// What gap is left by curvature and rounding.
     allowance: Allowance,
     /// What gap the whole tolerance would allow.
     whole: Allowance,
+    /// What curvature and rounding leave of the length aimed at; negative where they take more.
+    left: f64,
 }
 
 /// A part of the object, refined and seen.
@@ -70,177 +100,225 @@ impl<'a> Plan<'a> {
         tolerance: Tolerance,
         wanted: Wanted,
     ) -> Self {
+        let seen = seen_meshes(&view, &placed.parts);
+        let aimed = tolerance.times(placed.loosening);
         let mut plan = Self {
             view,
+            placed,
             tolerance,
-            length: 0.0,
-            parts: Cow::Borrowed(&placed.parts),
+            length: length_of(tolerance, &seen),
+            aimed,
+            aimed_length: length_of(aimed, &seen),
+            shape: None,
             deviation: 0.0,
-            curvature: 0.0,
-            drafts: vec![],
+            seen,
+            precision: wanted.precision,
         };
-        let seen: Vec<Mesh> = plan.seen_meshes();
-        let (center, radius) = ball(placed.parts.iter().map(|(_, part)| part.mesh()));
-        let stretch = view.stretch_bound(center, radius);
-        let aimed = tolerance.times(wanted.loosening);
-        plan.length = length_of(tolerance, &seen);
-        let aimed_length = length_of(aimed, &seen);
-
         if let Some(shaped) = &placed.shaped {
-            let rounding = rounding_bound(
-                &view,
-                placed.parts[0].1.mesh(),
-                &seen[0],
-                stretch,
-                wanted.precision,
-            );
             let mesh = placed.parts[0].1.mesh();
-            let target =
-                CURVATURE_SHARE * plan.deviation_allowed(aimed, aimed_length, rounding, mesh);
+            let rounding = plan.rounding(mesh, &plan.seen[0]);
+            let target = CURVATURE_SHARE * plan.deviation_allowed(rounding, mesh);
             let shape = match wanted.subdivide {
                 true => shaped.shape.within(target / shaped.largest_scale),
                 false => shaped.shape.clone(),
             };
             plan.deviation = shape.deviation() * shaped.largest_scale;
-            if shape != shaped.shape {
-                plan.parts = Cow::Owned(shaped.parts_like(&shape, &placed.parts));
-            }
+            plan.shape = Some(shape).filter(|shape| *shape != shaped.shape);
         }
-        let seen = if plan.parts.len() == seen.len() && matches!(plan.parts, Cow::Borrowed(_)) {
-            seen
-        } else {
-            plan.seen_meshes()
-        };
-        if plan.deviation > 0.0 {
-            let stretches = plan.parts[0].1.mesh().triangles().par_iter();
-            let stretches = stretches.map(|corners| {
-                local_stretch(
-                    &view,
-                    corners.map(|corner| plan.parts[0].1.mesh().positions()[corner as usize]),
-                )
-            });
-            plan.curvature = plan.deviation * stretches.reduce(|| 0.0, f64::max);
-        }
-        // One allowance for all parts, so that those that share an edge divide it alike.
-        let rounding = (seen.iter().zip(plan.parts.iter()))
-            .map(|(seen, (_, part))| {
-                rounding_bound(&view, part.mesh(), seen, stretch, wanted.precision)
-            })
-            .fold(0.0, f64::max);
-        let allowance = plan.allowance(aimed, aimed_length, plan.curvature, rounding, &seen);
-        let whole = plan.allowance(tolerance, plan.length, 0.0, 0.0, &seen);
-        let drafts = seen.into_iter().map(|seen| Draft {
-            allowance,
-            whole,
-            seen,
-        });
-        plan.drafts = drafts.collect();
         plan
     }
 
-    /// About how many triangles the object will have.
-    pub(super) fn predicted_triangles(&self, subdivide: bool) -> f64 {
+    /// About how many triangles the object will have, and whether they will be within the tolerance.
+    ///
+    /// Of a finer round shape than is at hand each facet stands for several, smaller ones.
+    pub(super) fn foresee(mut self, wanted: Wanted) -> Foresight {
+        let velocity = self.view.relative_velocity();
+        let facets = self.shape.as_ref().map_or(0, Shape::triangle_count);
+        let (draft, each) = if facets > FACETS_MADE_TO_PREDICT {
+            let at_hand = self.placed.parts[0].1.mesh().triangles().len();
+            let each = facets as f64 / at_hand as f64;
+            (self.draft_as_placed(each), each)
+        } else {
+            (self.draft(), 1.0)
+        };
         let observer = self.view.observer_rest();
-        let parts = self
-            .parts
-            .iter()
-            .zip(&self.drafts)
-            .map(|((_, part), draft)| {
-                let triangles = part.mesh().triangles();
-                if !subdivide {
-                    return triangles.len() as f64;
-                }
-                let predict = |corners: &[u32; 3]| {
-                    let position = |corner: u32| part.mesh().positions()[corner as usize];
-                    predicted_pieces(
-                        corners.map(|corner| position(corner) - observer),
-                        &draft.allowance,
-                    )
-                };
-                triangles
-                    .par_iter()
-                    .map(predict)
-                    .collect::<Vec<f64>>()
-                    .iter()
-                    .sum::<f64>()
-            });
-        parts.sum()
+        let facets = || {
+            draft.parts.iter().flat_map(|(_, part)| {
+                let mesh = part.mesh();
+                mesh.triangles().iter().map(|corners| {
+                    let positions = corners.map(|corner| mesh.positions()[corner as usize]);
+                    shrunk(positions, each).map(|position| position - observer)
+                })
+            })
+        };
+        if !wanted.subdivide || velocity.rapidity() == 0.0 {
+            let prove = |((_, part), seen): (&(String, Part), &Mesh)| {
+                let mesh = part.mesh();
+                self.certificate(&draft.limits, mesh, mesh, seen, self.largest_gap(mesh))
+            };
+            return Foresight {
+                triangles: each * facets().count() as f64,
+                reachable: (draft.parts.iter().zip(&draft.seen).map(prove)).all(|c| c.complete),
+            };
+        }
+        let facets: Vec<[DVec3; 3]> = facets().collect();
+        let pieces = facets
+            .par_iter()
+            .map(|&offsets| each * predicted_pieces(offsets, &draft.limits.allowance));
+        let kept = facets
+            .par_iter()
+            .all(|offsets| !draft.limits.allowance.is_at_its_least(offsets));
+        Foresight {
+            // Added up in their order: the same sum for any number of threads.
+            triangles: pieces.collect::<Vec<f64>>().iter().sum(),
+            reachable: kept && draft.limits.left >= LEAST_FOR_GAP * self.aimed_length,
+        }
     }
 
     /// Refines where that is wanted, maps, and proves.
-    pub(super) fn carry_out(self, wanted: Wanted) -> Vec<Surface> {
-        let observer = self.view.observer_rest();
-        let velocity = self.view.relative_velocity();
-        let drafts = self.parts.into_owned().into_iter().zip(self.drafts);
-        let surface = |((name, part), draft): ((String, Part), Draft)| {
-            let triangles_in = part.mesh().triangles().len();
-            let minimum = part.mesh().triangles().par_iter().map(|corners| {
-                let offsets =
-                    corners.map(|corner| part.mesh().positions()[corner as usize] - observer);
-                minimum_triangles(offsets, draft.whole.between(&offsets)).max(1.0)
-            });
-            // Added up in their order: the same sum for any number of threads.
-            let minimum_triangles = minimum.collect::<Vec<f64>>().iter().sum();
-            let (part, gap) = if wanted.subdivide && velocity.rapidity() > 0.0 {
-                let refined = refine(part.mesh(), observer, &draft.allowance);
-                (part.with_mesh(refined.mesh), refined.gap)
+    pub(super) fn carry_out(mut self, wanted: Wanted) -> Vec<Surface> {
+        let Draft {
+            parts,
+            seen,
+            limits,
+        } = self.draft();
+        let refining = wanted.subdivide && self.view.relative_velocity().rapidity() > 0.0;
+        let surface = |((name, part), seen): ((String, Part), Mesh)| {
+            if !refining {
+                let mesh = part.mesh();
+                let gap = self.largest_gap(mesh);
+                let certificate = self.certificate(&limits, mesh, mesh, &seen, gap);
+                return Surface {
+                    name,
+                    part,
+                    seen,
+                    certificate,
+                };
+            }
+            let mesh = part.mesh();
+            let refined = refine(mesh, self.view.observer_rest(), &limits.allowance);
+            let seen = if refined.mesh.positions().len() == seen.positions().len() {
+                seen
             } else {
-                let gap = largest_gap(part.mesh(), observer);
-                (part, gap)
-            };
-            let seen = if part.mesh().positions().len() == draft.seen.positions().len() {
-                draft.seen
-            } else {
-                seen_mesh(&self.view, part.mesh())
-            };
-            let (center, radius) = ball([part.mesh()].into_iter());
-            let stretch = self.view.stretch_bound(center, radius);
-            let bounds = Bounds {
-                gap: velocity.gamma_beta() * gap * (1.0 + 4.0 * f64::EPSILON),
-                deviation: self.deviation,
-                curvature: self.curvature,
-                rounding: rounding_bound(&self.view, part.mesh(), &seen, stretch, wanted.precision),
-            };
-            let counts = Counts {
-                triangles_in,
-                triangles_out: part.mesh().triangles().len(),
-                minimum_triangles,
-            };
-            let certificate = match self.tolerance {
-                Tolerance::Angle(degrees) => {
-                    Certificate::of_angles(degrees, &self.view, part.mesh(), bounds, counts)
-                }
-                _ => Certificate::of_lengths(self.length, bounds, counts),
+                seen_mesh(&self.view, &refined.mesh)
             };
             Surface {
                 name,
-                part,
+                certificate: self.certificate(&limits, mesh, &refined.mesh, &seen, refined.gap),
+                part: part.with_mesh(refined.mesh),
                 seen,
-                certificate,
             }
         };
-        drafts.map(surface).collect()
-    }
-
-    fn seen_meshes(&self) -> Vec<Mesh> {
-        self.parts
-            .iter()
-            .map(|(_, part)| seen_mesh(&self.view, part.mesh()))
+        parts
+            .into_owned()
+            .into_iter()
+            .zip(seen)
+            .map(surface)
             .collect()
     }
 
-    /// How far from a curved surface facets may be, at rest, if they were all that a tolerance is used for.
-    fn deviation_allowed(
+    /// The certificate of a mesh that was refined to another, with the largest gap `e`.
+    fn certificate(
         &self,
-        tolerance: Tolerance,
-        length: f64,
-        rounding: f64,
+        limits: &Limits,
         mesh: &Mesh,
-    ) -> f64 {
-        let left = (length - rounding).max(0.5 * length);
+        refined: &Mesh,
+        seen: &Mesh,
+        gap: f64,
+    ) -> Certificate {
+        let observer = self.view.observer_rest();
+        let minimum = mesh.triangles().par_iter().map(|corners| {
+            let offsets = corners.map(|corner| mesh.positions()[corner as usize] - observer);
+            minimum_triangles(offsets, limits.whole.between(&offsets)).max(1.0)
+        });
+        let bounds = Bounds {
+            gap: self.view.relative_velocity().gamma_beta() * gap * (1.0 + 4.0 * f64::EPSILON),
+            deviation: self.deviation,
+            curvature: limits.curvature,
+            rounding: self.rounding(refined, seen),
+        };
+        let counts = Counts {
+            triangles_in: mesh.triangles().len(),
+            triangles_out: refined.triangles().len(),
+            // Added up in their order: the same sum for any number of threads.
+            minimum_triangles: minimum.collect::<Vec<f64>>().iter().sum(),
+        };
+        match self.tolerance {
+            Tolerance::Angle(degrees) => {
+                Certificate::of_angles(degrees, &self.view, refined, bounds, counts)
+            }
+            _ => Certificate::of_lengths(self.length, bounds, counts),
+        }
+    }
+
+    /// The parts before refinement, those of a shape as fine as it has to be.
+    fn draft(&mut self) -> Draft<'a> {
+        let Some((shape, shaped)) = self.shape.as_ref().zip(self.placed.shaped.as_ref()) else {
+            return self.draft_as_placed(1.0);
+        };
+        let parts = shaped.parts_like(shape, &self.placed.parts);
+        let seen = seen_meshes(&self.view, &parts);
+        Draft {
+            limits: self.limits(&parts, &seen, 1.0),
+            parts: parts.into(),
+            seen,
+        }
+    }
+
+    /// The parts as they were placed, each of whose facets stands for `each` smaller ones.
+    fn draft_as_placed(&mut self, each: f64) -> Draft<'a> {
+        let seen = std::mem::take(&mut self.seen);
+        Draft {
+            limits: self.limits(&self.placed.parts, &seen, each),
+            parts: (&self.placed.parts).into(),
+            seen,
+        }
+    }
+
+    /// What is allowed for these parts, each of whose facets stands for `each` smaller ones.
+    fn limits(&self, parts: &[(String, Part)], seen: &[Mesh], each: f64) -> Limits {
+        let mut curvature = 0.0;
+        if self.deviation > 0.0 {
+            let mesh = parts[0].1.mesh();
+            let stretches = mesh.triangles().par_iter().map(|corners| {
+                let positions = corners.map(|corner| mesh.positions()[corner as usize]);
+                local_stretch(&self.view, shrunk(positions, each))
+            });
+            curvature = self.deviation * stretches.reduce(|| 0.0, f64::max);
+        }
+        let rounding = (seen.iter().zip(parts))
+            .map(|(seen, (_, part))| self.rounding(part.mesh(), seen))
+            .fold(0.0, f64::max);
+        let left = self.aimed_length - curvature - rounding;
+        Limits {
+            allowance: self.allowance(self.aimed, left, curvature, rounding, seen),
+            whole: self.allowance(self.tolerance, self.length, 0.0, 0.0, seen),
+            curvature,
+            left,
+        }
+    }
+
+    fn rounding(&self, mesh: &Mesh, seen: &Mesh) -> f64 {
+        let (center, radius) = ball(mesh);
+        let stretch = self.view.stretch_bound(center, radius);
+        rounding_bound(&self.view, mesh, seen, stretch, self.precision)
+    }
+
+    fn largest_gap(&self, mesh: &Mesh) -> f64 {
+        let observer = self.view.observer_rest();
+        let gaps = mesh.triangles().par_iter().map(|corners| {
+            let [a, b, c] = corners.map(|corner| mesh.positions()[corner as usize] - observer);
+            triangle_gap(a, b, c)
+        });
+        gaps.reduce(|| 0.0, f64::max)
+    }
+
+    /// How far from a curved surface facets may be, at rest, if they were all that a tolerance is used for.
+    fn deviation_allowed(&self, rounding: f64, mesh: &Mesh) -> f64 {
+        let left = (self.aimed_length - rounding).max(0.5 * self.aimed_length);
         let allowed = |corners: &[u32; 3]| {
             let positions = corners.map(|corner| mesh.positions()[corner as usize]);
-            let here = match tolerance {
+            let here = match self.aimed {
                 Tolerance::Angle(degrees) => {
                     let offsets = positions.map(|position| position - self.view.observer_rest());
                     let distances = offsets.map(|offset| self.view.seen_distance(offset));
@@ -256,11 +334,11 @@ impl<'a> Plan<'a> {
         all.reduce(|| f64::INFINITY, f64::min)
     }
 
-    /// The gap `e` that a tolerance allows when `curvature` and `rounding` use some of it.
+    /// The gap `e` that a tolerance allows when `curvature` and `rounding` leave `left` of its length.
     fn allowance(
         &self,
         tolerance: Tolerance,
-        length: f64,
+        left: f64,
         curvature: f64,
         rounding: f64,
         seen: &[Mesh],
@@ -273,7 +351,7 @@ impl<'a> Plan<'a> {
                 // goes with the distance.
                 let s = degrees.to_radians().sin();
                 let left = if curvature > 0.0 {
-                    (1.0 - CURVATURE_SHARE * (1.0 + s)).max(0.1)
+                    (1.0 - CURVATURE_SHARE * (1.0 + s)).max(LEAST_FOR_GAP)
                 } else {
                     1.0
                 };
@@ -286,10 +364,9 @@ impl<'a> Plan<'a> {
                     least: LEAST_OF_ANGLE * diagonal * s * share,
                 }
             }
-            // Where more is taken than there is, the gap gets a tenth all the same, and the certificate tells.
             _ => {
-                let left = (length - curvature - rounding).max(0.1 * length);
-                Allowance::Everywhere(ROOM * left / gamma_beta)
+                let least = LEAST_FOR_GAP * length_of(tolerance, seen);
+                Allowance::Everywhere(ROOM * left.max(least) / gamma_beta)
             }
         }
     }
@@ -316,23 +393,23 @@ fn length_of(tolerance: Tolerance, seen: &[Mesh]) -> f64 {
     }
 }
 
-/// A ball around meshes.
-fn ball<'m>(meshes: impl Iterator<Item = &'m Mesh>) -> (DVec3, f64) {
-    let bounds = meshes
-        .filter_map(Mesh::bounds)
-        .reduce(|(low, high), (l, h)| (low.min(l), high.max(h)));
-    let (low, high) = bounds.unwrap_or_default();
+fn seen_meshes(view: &View, parts: &[(String, Part)]) -> Vec<Mesh> {
+    let meshes = parts.iter().map(|(_, part)| part.mesh());
+    meshes.map(|mesh| seen_mesh(view, mesh)).collect()
+}
+
+/// One of `parts` equal triangles that a triangle is made of, in its middle.
+fn shrunk(corners: [DVec3; 3], parts: f64) -> [DVec3; 3] {
+    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+    corners.map(|corner| middle + (corner - middle) / parts.sqrt())
+}
+
+/// A ball around a mesh.
+fn ball(mesh: &Mesh) -> (DVec3, f64) {
+    let (low, high) = mesh.bounds().unwrap_or_default();
     // Rounded up: the corners of the box are in it.
     (
         0.5 * low + 0.5 * high,
         0.5 * low.distance(high) * (1.0 + 1e-12),
     )
-}
-
-fn largest_gap(mesh: &Mesh, observer: DVec3) -> f64 {
-    let gaps = mesh.triangles().par_iter().map(|corners| {
-        let [a, b, c] = corners.map(|corner| mesh.positions()[corner as usize] - observer);
-        triangle_gap(a, b, c)
-    });
-    gaps.reduce(|| 0.0, f64::max)
 }

@@ -37,10 +37,26 @@ impl Allowance {
                 share,
                 less,
                 least,
-            } => {
-                let distances = offsets.iter().map(|&offset| view.seen_distance(offset));
-                (distances.fold(f64::INFINITY, f64::min) * share - less).max(*least)
-            }
+            } => (nearest(view, offsets) * share - less).max(*least),
         }
     }
+
+    /// Whether what is allowed there is more than the tolerance, so that it cannot be kept.
+    pub(crate) fn is_at_its_least(&self, offsets: &[DVec3]) -> bool {
+        match self {
+            Self::Everywhere(_) => false,
+            Self::Angle {
+                view,
+                share,
+                less,
+                least,
+            } => nearest(view, offsets) * share - less < *least,
+        }
+    }
+}
+
+/// The smallest of the distances at which points are seen.
+fn nearest(view: &View, offsets: &[DVec3]) -> f64 {
+    let distances = offsets.iter().map(|&offset| view.seen_distance(offset));
+    distances.fold(f64::INFINITY, f64::min)
 }

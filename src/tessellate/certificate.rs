@@ -179,7 +179,12 @@ impl Certificate {
                 180.0
             }
         };
-        Self::new("degrees", degrees, sines.map(angle), counts)
+        let certificate = Self::new("degrees", degrees, sines.map(angle), counts);
+        Self {
+            // Nothing is seen farther off than on the other side of the sky.
+            total: certificate.total.min(180.0),
+            ..certificate
+        }
     }
 
     fn new(unit: &'static str, tolerance: f64, bounds: [f64; 4], counts: Counts) -> Self {

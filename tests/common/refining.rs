@@ -58,8 +58,12 @@ impl Sighting {
     }
 
     pub(crate) fn of_source(&self, source: Source) -> Vec<Sighted> {
+        self.sighted(&self.stage(source))
+    }
+
+    /// The photosurfaces of a stage of this sighting.
+    pub(crate) fn sighted(&self, stage: &Stage) -> Vec<Sighted> {
         let map = PhotosurfaceMap::new(&self.velocity);
-        let stage = self.stage(source);
         let surfaces = stage.photosurfaces(0, self.wanted);
         let sighted = surfaces.map(|surface| Sighted {
             certificate: surface.facts.certificate,

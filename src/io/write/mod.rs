@@ -5,6 +5,7 @@ mod file;
 mod gltf;
 mod pack;
 mod ply;
+mod range;
 mod report;
 mod size;
 

@@ -32,7 +32,7 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
         return Err(WriteError::TooManyVertices(vertices));
     }
     for layer in &layers {
-        layer.check()?;
+        check_numbers(layer.name, layer.mesh, layer.doppler_factors)?;
     }
     let with_colors = layers.iter().any(|layer| layer.mesh.colors().is_some());
 
@@ -92,35 +92,41 @@ fn layers<'a>(export: &'a Export<'_>) -> Vec<Layer<'a>> {
     marker.into_iter().chain(photosurfaces).collect()
 }
 
-impl Layer<'_> {
-    fn check(&self) -> Result<(), WriteError> {
-        if self.mesh.triangles().is_empty() {
-            return Err(WriteError::Empty(self.name.to_owned()));
-        }
-        let range_error = |quantity, vertex, value, limit| WriteError::Range {
-            name: self.name.to_owned(),
-            quantity,
-            vertex,
-            value,
-            limit,
-        };
-        if let Some(vertex) = self.mesh.positions().iter().position(|p| !p.is_finite()) {
-            let name = self.name.to_owned();
-            return Err(WriteError::Overflow { name, vertex });
-        }
-        let limit = f64::from(f32::MAX);
-        let factors = self.doppler_factors.unwrap_or_default();
-        match factors.iter().position(|factor| !(*factor <= limit)) {
-            Some(vertex) => Err(range_error(
-                "the Doppler factor",
-                vertex,
-                factors[vertex],
-                limit,
-            )),
-            None => Ok(()),
-        }
+/// Refuses what the file cannot hold.
+///
+/// # Errors
+///
+/// No triangles, a place that is no number, or a Doppler factor that `f32` cannot hold.
+pub(super) fn check_numbers(
+    name: &str,
+    mesh: &Mesh,
+    doppler_factors: Option<&[f64]>,
+) -> Result<(), WriteError> {
+    let name = || name.to_owned();
+    if mesh.triangles().is_empty() {
+        return Err(WriteError::Empty(name()));
     }
+    if let Some(vertex) = mesh.positions().iter().position(|p| !p.is_finite()) {
+        return Err(WriteError::Overflow {
+            name: name(),
+            vertex,
+        });
+    }
+    let limit = f64::from(f32::MAX);
+    let factors = doppler_factors.unwrap_or_default();
+    match factors.iter().position(|factor| !(*factor <= limit)) {
+        Some(vertex) => Err(WriteError::Range {
+            name: name(),
+            quantity: "the Doppler factor",
+            vertex,
+            value: factors[vertex],
+            limit,
+        }),
+        None => Ok(()),
+    }
+}
 
+impl Layer<'_> {
     fn write_vertices(&self, writer: &mut impl Write, with_colors: bool) -> Result<(), WriteError> {
         for (vertex, position) in self.mesh.positions().iter().enumerate() {
             let normal = self

@@ -123,7 +123,7 @@ impl Shape {
     }
 
     /// Of how many triangles a round shape is made; of others no one asks.
-    fn triangle_count(&self) -> u64 {
+    pub(crate) fn triangle_count(&self) -> u64 {
         match self {
             Self::Sphere(shape) => shape.triangle_count(),
             Self::Cylinder(shape) => triangle_count(&shape.profile()),

@@ -1,0 +1,99 @@
+//! Whether the numbers of a file can hold what is seen, before any of the work.
+
+use super::pack::pack;
+use super::ply::check_numbers;
+use super::{Format, WriteError};
+use crate::photosurface::{Stage, Wanted};
+
+impl Format {
+    /// Maps the vertices that are there before any refinement, at the steps where they might be beyond the
+    /// range of numbers, and refuses what the format cannot hold.
+    ///
+    /// # Errors
+    ///
+    /// As the format's own writer: the first number that is too large, or an extent that vanishes.
+    pub fn check_range(self, stage: &Stage) -> Result<(), WriteError> {
+        let wanted = Wanted {
+            subdivide: false,
+            doppler_factors: self == Self::Ply,
+            ..Wanted::default()
+        };
+        let steps = 0..stage.scene().steps().len();
+        for step in steps.filter(|&step| !stage.is_within_f32(step)) {
+            for photosurface in stage.photosurfaces(step, wanted) {
+                let (name, mesh) = (&photosurface.facts.name, &photosurface.mesh);
+                match self {
+                    Self::Glb | Self::Gltf => drop(pack(name, mesh.positions())?),
+                    Self::Ply => {
+                        check_numbers(name, mesh, photosurface.doppler_factors.as_deref())?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::load_models;
+    use crate::scene::Scene;
+
+    fn stage(observer: &str, radius: &str) -> Stage {
+        let scene = format!(
+            r#"{{ "observer": {{ "velocity": {observer} }},
+                 "objects": [ {{ "name": "ball", "shape": {{ "sphere": {{ "radius": {radius} }} }}, "position": [0, 0, -5] }} ],
+                 "steps": [-1, 0, 1] }}"#
+        );
+        let scene = Scene::from_json(&scene).unwrap();
+        let (models, _) = load_models(&scene, "".as_ref()).unwrap();
+        Stage::new(scene, models)
+    }
+
+    #[test]
+    fn what_a_file_cannot_hold_is_named_before_the_work() {
+        for (observer, radius, gltf, ply) in [
+            (r#"{ "beta": 0.9 }"#, "1", None, None),
+            (r#"{ "gamma": 1e12 }"#, "1", None, None),
+            (
+                r#"{ "rapidity": 350 }"#,
+                "1",
+                Some("the position of vertex 0 of the photosurface \"ball_step000\""),
+                Some("the Doppler factor of vertex 0 of the photosurface \"ball_step000\""),
+            ),
+            (
+                r#"{ "beta": 0.5 }"#,
+                "1e-45",
+                Some("the photosurface \"ball_step000\" is only"),
+                None,
+            ),
+            (
+                r#"{ "beta": 0.5 }"#,
+                "1e45",
+                Some("the position of vertex"),
+                None,
+            ),
+        ] {
+            let stage = stage(observer, radius);
+            for (format, expected) in [
+                (Format::Glb, gltf),
+                (Format::Gltf, gltf),
+                (Format::Ply, ply),
+            ] {
+                let found = format
+                    .check_range(&stage)
+                    .map_err(|error| error.to_string());
+                match (found, expected) {
+                    (Ok(()), None) => {}
+                    (Err(message), Some(expected)) => {
+                        assert!(message.contains(expected), "{message}");
+                    }
+                    (found, expected) => {
+                        panic!("{observer} {radius} {format:?}: {found:?}, {expected:?}")
+                    }
+                }
+            }
+        }
+    }
+}

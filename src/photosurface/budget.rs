@@ -1,0 +1,116 @@
+//! What the tolerances of a scene will take, and what a budget leaves of them.
+
+use super::{Stage, Wanted};
+
+/// Room that a budget leaves for predictions, which are good to about a half (`tests/cli.rs`).
+const PREDICTION_ROOM: f64 = 1.6;
+
+/// Of more steps than this a prediction looks at as many, evenly spread.
+const STEPS_LOOKED_AT: usize = 32;
+
+/// What is there before any refinement may be more than a budget: then no tolerance fits it.
+const MAX_LOOSENING: f64 = 1e300;
+
+/// A share of the budget is used up to this part at least, if so many steps are enough to come near to it.
+const USED: f64 = 0.7;
+const MAX_HALVINGS: usize = 12;
+
+/// What one object will take, known in a fraction of the time that it takes to make it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prediction {
+    /// About how many triangles its photosurfaces will have, all steps together.
+    pub triangles: f64,
+    /// Whether its tolerance can be kept, by as many triangles as that.
+    ///
+    /// Not where rounding alone takes more, where the observer touches a surface and the tolerance is an angle, or
+    /// where nothing is to be subdivided.
+    pub reachable: bool,
+}
+
+impl Stage {
+    /// What each object will take, in the order of the scene.
+    pub fn predictions(&self, wanted: Wanted) -> Vec<Prediction> {
+        let objects = 0..self.objects.len();
+        objects
+            .map(|object| self.prediction(object, wanted))
+            .collect()
+    }
+
+    /// The same stage with looser aims, so that all its photosurfaces together have about as many triangles as
+    /// `most`, or fewer; and for each object how many times looser, 1 where it is left alone.
+    ///
+    /// Objects that need less than an equal share of what is left by the others get what they need; the others
+    /// share the rest, and within each the largest gaps are closed first. Certificates are still against the
+    /// tolerances of the scene. Triangles that are there before any refinement stay, even if they are more.
+    #[must_use]
+    pub fn within_budget(mut self, wanted: Wanted, most: u64) -> (Self, Vec<f64>) {
+        let needed =
+            |stage: &Self, object| PREDICTION_ROOM * stage.prediction(object, wanted).triangles;
+        let mut objects: Vec<(usize, f64)> = (0..self.objects.len())
+            .map(|object| (object, needed(&self, object)))
+            .collect();
+        objects.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+        let mut left = most as f64;
+        for (done, &(object, mut need)) in objects.iter().enumerate() {
+            let share = left / (objects.len() - done) as f64;
+            if wanted.subdivide && need > share {
+                need = self.loosen(object, share, need, needed);
+            }
+            left = (left - need).max(0.0);
+        }
+        let loosening = self.objects.iter().map(|placed| placed.loosening).collect();
+        (self, loosening)
+    }
+
+    /// Loosens the aim of one object until it needs no more than its share, and hardly less; what it needs then.
+    fn loosen(
+        &mut self,
+        object: usize,
+        share: f64,
+        mut need: f64,
+        needed: impl Fn(&Self, usize) -> f64,
+    ) -> f64 {
+        let mut too_tight = 1.0;
+        let mut loosening: f64 = 1.0;
+        while need > share && loosening < MAX_LOOSENING {
+            too_tight = loosening;
+            // Triangles go with the inverse of the tolerance, but for those that are there anyway.
+            loosening = (loosening * (need / share).max(1.5)).min(MAX_LOOSENING);
+            self.objects[object].loosening = loosening;
+            need = needed(self, object);
+        }
+        for _ in 0..MAX_HALVINGS {
+            if need > share || need >= USED * share {
+                break;
+            }
+            // The roots first: the product might overflow.
+            let between = too_tight.sqrt() * loosening.sqrt();
+            self.objects[object].loosening = between;
+            let need_between = needed(self, object);
+            if need_between > share {
+                too_tight = between;
+            } else {
+                (loosening, need) = (between, need_between);
+            }
+        }
+        self.objects[object].loosening = loosening;
+        need
+    }
+
+    fn prediction(&self, object: usize, wanted: Wanted) -> Prediction {
+        let steps = self.scene.steps().len();
+        let looked_at = steps.min(STEPS_LOOKED_AT);
+        let mut prediction = Prediction {
+            triangles: 0.0,
+            reachable: true,
+        };
+        for index in 0..looked_at {
+            let step = index * (steps - 1) / (looked_at - 1).max(1);
+            let (object, placed) = (&self.scene.objects()[object], &self.objects[object]);
+            let foresight = self.plan(object, placed, step, wanted).foresee(wanted);
+            prediction.triangles += foresight.triangles * steps as f64 / looked_at as f64;
+            prediction.reachable &= foresight.reachable;
+        }
+        prediction
+    }
+}

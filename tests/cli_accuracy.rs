@@ -1,0 +1,270 @@
+//! Accuracy on the command line: tolerances, budgets, what is foretold and what is certified.
+
+mod common;
+
+use common::command::{Workplace, glb_json};
+use serde_json::Value;
+
+/// A floor at the observer's feet, which no angle can be kept on, and a ball and a box ahead.
+const TOUCHED: &str = r#"{ "observer": { "velocity": { "beta": 0.9 } },
+  "objects": [
+    { "name": "floor", "shape": { "grid": { "size": 10, "cells": 4 } } },
+    { "name": "ball", "shape": { "sphere": { "radius": 1 } }, "position": [0, 2, -6] },
+    { "name": "box", "shape": { "box": { "size": [1, 1, 1] } }, "position": [3, 1, -6] } ],
+  "tolerance": { "angle_deg": 0.01 } }"#;
+
+/// Each object's last column in the table of `check`, and its last line.
+fn foretold(table: &str) -> (Vec<(String, bool)>, String) {
+    let lines: Vec<_> = table.lines().collect();
+    let objects = lines[1..lines.len() - 1].iter().map(|line| {
+        let words: Vec<_> = line.split_whitespace().collect();
+        (words[0].to_owned(), words[words.len() - 1] == "yes")
+    });
+    (objects.collect(), lines[lines.len() - 1].to_owned())
+}
+
+fn triangles(report: &Value) -> u64 {
+    let objects = report["objects"].as_array().expect("objects");
+    objects
+        .iter()
+        .filter_map(|object| object["triangles"].as_u64())
+        .sum()
+}
+
+#[test]
+fn accuracy_is_asked_for_in_three_units_and_certified() {
+    let workplace = Workplace::new();
+    let certificate = |flags: &str, status: i32| {
+        let run = workplace.run(&format!(
+            "export --example cube --steps 1 -o out.glb --report report.json {flags}"
+        ));
+        assert_eq!(run.status, status, "{run}");
+        let certificate = workplace.read_json("report.json")["objects"][0]["certificate"].clone();
+        assert_eq!(certificate["complete"], status == 0, "{run}\n{certificate}");
+        let json = glb_json(&workplace.read("out.glb"));
+        assert_eq!(json["nodes"][1]["extras"]["certificate"], certificate);
+        certificate
+    };
+    let default = certificate("", 0);
+    assert_eq!(default, certificate("--tolerance 1e-3", 0));
+    assert!(
+        certificate("--tolerance 1e-4", 0)["tolerance"].as_f64() < default["tolerance"].as_f64()
+    );
+    assert_eq!(certificate("--tolerance abs:0.02", 0)["tolerance"], 0.02);
+    let angle = certificate("--tolerance deg:0.5", 0);
+    assert_eq!(
+        (&angle["unit"], &angle["tolerance"]),
+        (&"degrees".into(), &0.5.into())
+    );
+    let untouched = certificate("--no-subdivide --tolerance 1e-6", 1);
+    assert_eq!(untouched["triangles_in"], untouched["triangles_out"]);
+    let budget = certificate("--tolerance 1e-6 --max-triangles 1000", 1);
+    assert!(budget["triangles_out"].as_u64() <= Some(1000), "{budget}");
+    for (wrong, words) in [
+        ("0", "expected a finite number > 0"),
+        ("-1", "expected a finite number > 0"),
+        ("deg:100", "90 degrees"),
+        ("mm:1", "abs:0.01"),
+    ] {
+        workplace
+            .run(&format!("export --tolerance {wrong} -o x.glb"))
+            .error(&["--tolerance", words]);
+    }
+    let scene = |tolerance: &str| {
+        format!(
+            r#"{{ "objects": [ {{ "name": "ball", "shape": {{ "sphere": {{ "radius": 1 }} }} }} ],
+                 "tolerance": {tolerance} }}"#
+        )
+    };
+    for (tolerance, words) in [
+        (
+            r#"{ "relative": -0.1 }"#,
+            "is -0.1, expected a finite number > 0",
+        ),
+        (
+            r#"{ "angle_deg": 0 }"#,
+            "is 0 degrees, expected an angle > 0",
+        ),
+        (
+            r#"{ "relative": 1, "absolute": 1 }"#,
+            "both `relative` and `absolute`",
+        ),
+    ] {
+        workplace.write("wrong.json", scene(tolerance));
+        workplace
+            .run("check wrong.json")
+            .error(&["wrong.json", "line 2", "tolerance", words]);
+    }
+}
+
+/// What `check` says beforehand is what `export` makes, to within a half, on every built-in scene.
+#[test]
+fn triangles_are_predicted() {
+    let workplace = Workplace::new();
+    for scene in ["sphere", "cube", "lattice", "street", "snapshot"] {
+        for tolerance in ["1e-2", "1e-3", "1e-4"] {
+            let flags = format!("--example {scene} --tolerance {tolerance}");
+            let check = workplace.run(&format!("check {flags}")).success();
+            let last = check
+                .stdout_text()
+                .lines()
+                .last()
+                .unwrap_or_default()
+                .to_owned();
+            let digits = last.rsplit("about ").next().unwrap_or_default();
+            let digits: String = digits.chars().filter(char::is_ascii_digit).collect();
+            let predicted: f64 = digits.parse().expect("a count");
+            workplace
+                .run(&format!("export {flags} -o out.glb --report report.json"))
+                .success();
+            let report = workplace.read_json("report.json");
+            let objects = report["objects"].as_array().unwrap();
+            let made: f64 = objects
+                .iter()
+                .filter_map(|object| object["triangles"].as_f64())
+                .sum();
+            let ratio = predicted / made;
+            assert!(
+                (0.67..1.5).contains(&ratio),
+                "{flags}: {predicted} predicted, {made} made"
+            );
+        }
+    }
+}
+
+/// However fine a tolerance is, what it takes is known at once, and a budget keeps round shapes small too.
+#[test]
+fn no_tolerance_is_too_fine_to_foretell() {
+    let workplace = Workplace::new();
+    for tolerance in ["1e-9", "abs:1e-9", "abs:1e-300", "deg:1e-9"] {
+        for example in ["sphere", "lattice"] {
+            let run = workplace.run(&format!(
+                "check --example {example} --tolerance {tolerance}"
+            ));
+            let run = run.success();
+            assert!(
+                run.stderr.contains("more than --max-triangles 20,000,000"),
+                "{run}"
+            );
+            assert!(run.stderr.contains("would fit"), "{run}");
+            assert!(!foretold(run.stdout_text()).0[0].1, "{run}");
+        }
+        let run = workplace.run(&format!(
+            "export --tolerance {tolerance} --max-triangles 30000 -o out.glb --report report.json"
+        ));
+        assert_eq!(run.status, 1, "{run}");
+        let made = triangles(&workplace.read_json("report.json"));
+        assert!((10_000..=30_000).contains(&made), "{made}\n{run}");
+    }
+}
+
+/// What is there before any subdivision is never taken away; that it is more than the budget is said.
+#[test]
+fn a_budget_below_the_source_is_not_kept_and_that_is_said() {
+    let workplace = Workplace::new();
+    workplace.write(
+        "square.obj",
+        "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n",
+    );
+    let run = workplace.run("export square.obj --max-triangles 1 -o out.glb --report report.json");
+    assert_eq!(run.status, 1, "{run}");
+    assert!(
+        run.stderr
+            .contains("2 triangles are more than --max-triangles 1"),
+        "{run}"
+    );
+    assert_eq!(triangles(&workplace.read_json("report.json")), 2);
+    let run = workplace.run("export square.obj --max-triangles 2 -o out.glb");
+    assert_eq!(run.status, 0, "{run}");
+}
+
+/// An object whose tolerance no number of triangles keeps does not use up what the others need.
+#[test]
+fn a_hopeless_object_is_foretold_and_leaves_the_budget_to_the_others() {
+    let workplace = Workplace::new();
+    workplace.write("touched.json", TOUCHED);
+    for flags in ["", "--max-triangles 30000"] {
+        let check = workplace
+            .run(&format!("check touched.json {flags}"))
+            .success();
+        let (objects, _) = foretold(check.stdout_text());
+        let expected = [("floor", false), ("ball", true), ("box", true)];
+        assert_eq!(
+            objects,
+            expected.map(|(name, kept)| (name.to_owned(), kept))
+        );
+        let run = workplace.run(&format!(
+            "export touched.json {flags} -o out.glb --report report.json"
+        ));
+        assert_eq!(run.status, 1, "{run}");
+        let report = workplace.read_json("report.json");
+        for (object, (name, kept)) in report["objects"].as_array().unwrap().iter().zip(objects) {
+            assert_eq!(object["name"], name.as_str());
+            assert_eq!(object["certificate"]["complete"], kept, "{object}");
+            assert!(
+                object["certificate"]["total"].as_f64() <= Some(180.0),
+                "{object}"
+            );
+        }
+    }
+    // As they are, only what is small enough already is within the tolerance.
+    let run = workplace.run("check touched.json --no-subdivide").success();
+    let kept: Vec<_> = foretold(run.stdout_text())
+        .0
+        .into_iter()
+        .map(|(_, kept)| kept)
+        .collect();
+    workplace.run("export touched.json --no-subdivide -o out.glb --report report.json");
+    let report = workplace.read_json("report.json");
+    let objects = report["objects"].as_array().unwrap().iter();
+    let complete: Vec<_> = objects
+        .map(|object| object["certificate"]["complete"] == true)
+        .collect();
+    assert_eq!(kept, complete);
+    assert!(complete.contains(&true) && complete.contains(&false));
+}
+
+#[test]
+fn each_level_of_detail_is_a_file_and_a_report() {
+    let workplace = Workplace::new();
+    let run = workplace
+        .run("export --lod 1e-1,1e-2 -o out.glb --report report.json")
+        .success();
+    let files = [
+        "out_lod0.glb",
+        "out_lod1.glb",
+        "report_lod0.json",
+        "report_lod1.json",
+    ];
+    assert_eq!(workplace.files(), files, "{run}");
+    let [coarse, fine] = ["report_lod0.json", "report_lod1.json"]
+        .map(|report| triangles(&workplace.read_json(report)));
+    assert!(coarse < fine, "{coarse} {fine}");
+    workplace
+        .run("export --lod 1e-2,abs:1,1e-2 -o twice.glb")
+        .error(&["--lod", "1.000e-2 twice"]);
+}
+
+/// A speed that makes numbers beyond `f32` is refused with the object, the step and the number, by `export` and
+/// `check` alike, before anything is refined.
+#[test]
+fn numbers_beyond_the_file_are_refused_at_once() {
+    let workplace = Workplace::new();
+    let words = [
+        "\"sphere_step000\"",
+        "vertex 0",
+        "beyond what 32-bit",
+        "smaller rapidity",
+    ];
+    workplace
+        .run("export --rapidity 350 --tolerance 1e-6 -o out.glb")
+        .error(&words);
+    workplace
+        .run("export --rapidity 350 -o out.ply")
+        .error(&["the Doppler factor", "\"sphere_step000\""]);
+    assert!(workplace.files().is_empty());
+    let run = workplace.run("check --rapidity 350").success();
+    for word in words {
+        assert!(run.stderr.contains(word), "{run}");
+    }
+}
