@@ -12,7 +12,8 @@ use super::messages::{Verbosity, counted, grouped, print};
 /// Validate a scene or a mesh, and say what an export would make
 ///
 /// Reads everything that an export would read and prints, for every object, its parts and triangles, how fast
-/// it moves relative to the observer, and about how many triangles its photosurfaces take, all steps together.
+/// it moves relative to the observer, about how many triangles its photosurfaces take, all steps together, and
+/// whether they will be certified to be within the tolerance.
 /// Makes and writes nothing.
 #[derive(Debug, clap::Args)]
 pub(super) struct CheckArgs {
