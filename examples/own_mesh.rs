@@ -38,6 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         scene: &stage.facts(),
         marker: None,
         photosurfaces: &photosurfaces,
+        playback: None,
     };
     write_whole("wall.glb".as_ref(), |writer| write_glb(&export, writer))?;
     Ok(())

@@ -29,7 +29,7 @@ pub use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec4};
 
 pub use io::{
     AccessorProblem, DocumentProblem, Export, FileFindings, Findings, Format, LoadError,
-    NodeProblem, Note, ObjProblem, ReadError, Report, StageTime, UriProblem, WriteError,
+    NodeProblem, Note, ObjProblem, Playback, ReadError, Report, StageTime, UriProblem, WriteError,
     abandon_writes, destination, load_models, read_gltf_bytes, read_model, write_glb, write_gltf,
     write_ply, write_whole,
 };
@@ -39,10 +39,12 @@ pub use mesh::{
     Lattice, Length, Material, Mesh, MeshError, Model, Part, Rod, Sampler, Shape, ShapeError,
     Sphere, Texture, Torus, Wrap,
 };
-pub use photosurface::{Facts, Photosurface, Prediction, SceneFacts, Stage, Wanted, step_label};
+pub use photosurface::{
+    Facts, Photosurface, Prediction, SceneFacts, Stage, VertexData, Wanted, step_label,
+};
 pub use scene::{
-    BUILT_IN_SCENES, BuiltInScene, InvalidScene, Object, Observer, Scene, SceneError, Source,
-    Tolerance, ToleranceError, even_steps,
+    Attribute, Attributes, BUILT_IN_SCENES, BuiltInScene, InvalidScene, Object, Observer, Scene,
+    SceneError, Source, Tolerance, ToleranceError, UnknownAttribute, even_steps,
 };
 pub use spacetime::{Event, Lorentz, MAX_RAPIDITY, Velocity, VelocityError, WorldLine};
 pub use tessellate::{Certificate, Precision, edge_gap, triangle_gap, triangle_gap_place};

@@ -2,26 +2,27 @@
 
 mod budget;
 mod facts;
+mod morph;
+mod names;
 mod plan;
+mod seen;
 
-use std::collections::HashSet;
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec4};
-use rayon::prelude::*;
+use glam::DAffine3;
 
 use crate::light_cone::View;
 use crate::mesh::{Appearance, Color, Material, Mesh, Model, Part, Shape};
-use crate::scene::{Object, Scene, Source};
+use crate::scene::{Attributes, Object, Scene, Source};
 use crate::spacetime::Velocity;
 use crate::tessellate::Precision;
+use names::UniqueNames;
 use plan::{Plan, Surface};
 
 pub use budget::Prediction;
 pub use facts::{Facts, SceneFacts};
-
-/// Vertices a thread takes at a time: enough to outweigh handing them over.
-const VERTICES_PER_JOB: usize = 4096;
+pub use names::step_label;
+pub use seen::VertexData;
 
 /// The observer's marker in files.
 const MARKER_NAME: &str = "observer";
@@ -62,8 +63,8 @@ pub struct Photosurface {
     /// Its geometry in the observer's frame, observer at the origin: the vertices of the part at rest, in
     /// the same order, then those that were added.
     pub mesh: Mesh,
-    /// Frequency seen over frequency emitted, at each vertex; only where it was asked for.
-    pub doppler_factors: Option<Vec<f64>>,
+    /// What else was asked for of its vertices.
+    pub vertex_data: VertexData,
     /// What it is made of.
     pub material: Option<Arc<Material>>,
 }
@@ -71,8 +72,8 @@ pub struct Photosurface {
 /// What is wanted of photosurfaces beside their shape, and how much may be spent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wanted {
-    /// Frequency seen over frequency emitted, at each vertex.
-    pub doppler_factors: bool,
+    /// What is to be known of every vertex.
+    pub attributes: Attributes,
     /// Whether meshes are refined until they are within the tolerance; if not, every vertex stays what it is and
     /// the certificate tells how far off the mesh is.
     pub subdivide: bool,
@@ -84,7 +85,7 @@ impl Default for Wanted {
     /// Meshes within the tolerance, for glTF, and nothing else.
     fn default() -> Self {
         Self {
-            doppler_factors: false,
+            attributes: Attributes::default(),
             subdivide: true,
             precision: Precision::Single,
         }
@@ -183,16 +184,12 @@ impl Stage {
     pub fn photosurfaces(&self, step: usize, wanted: Wanted) -> impl Iterator<Item = Photosurface> {
         let objects = self.scene.objects().iter().zip(&self.objects);
         objects.flat_map(move |(object, placed)| {
-            let view = self.view(object, self.scene.steps()[step]);
-            let surfaces = self.plan(object, placed, step, wanted).carry_out(wanted);
-            surfaces.into_iter().map(move |surface| Photosurface {
-                doppler_factors: wanted
-                    .doppler_factors
-                    .then(|| doppler_factors(&view, surface.part.mesh())),
-                material: surface.part.material.clone(),
-                facts: self.part_facts(object, &surface, step, &view),
-                mesh: surface.seen,
-            })
+            let plan = self.plan(object, placed, step, wanted);
+            let view = *plan.view();
+            let surfaces = plan.carry_out(wanted);
+            surfaces
+                .into_iter()
+                .map(move |surface| self.photosurface(object, step, &view, surface, wanted))
         })
     }
 
@@ -237,13 +234,20 @@ impl Stage {
         Plan::new(placed, view, self.scene.tolerance(object), wanted)
     }
 
-    fn part_facts(&self, object: &Object, surface: &Surface, step: usize, view: &View) -> Facts {
+    fn photosurface(
+        &self,
+        object: &Object,
+        step: usize,
+        view: &View,
+        surface: Surface,
+        wanted: Wanted,
+    ) -> Photosurface {
         let steps = self.scene.steps();
         let relative = view.relative_velocity();
-        let name = &surface.name;
-        Facts {
+        let name = surface.name;
+        let facts = Facts {
             name: match steps.len() {
-                1 => name.to_owned(),
+                1 => name,
                 _ => format!("{name}_{}", step_label(step)),
             },
             object: object.name.clone(),
@@ -254,7 +258,13 @@ impl Stage {
             relative_rapidity: relative.rapidity(),
             vertices: surface.seen.positions().len(),
             triangles: surface.seen.triangles().len(),
-            certificate: surface.certificate.clone(),
+            certificate: surface.certificate,
+        };
+        Photosurface {
+            facts,
+            vertex_data: VertexData::new(view, surface.part.mesh(), wanted.attributes),
+            material: surface.part.material,
+            mesh: surface.seen,
         }
     }
 }
@@ -288,41 +298,6 @@ impl Shaped {
     }
 }
 
-/// How a step is called in names of files and of things in them: `step003`.
-pub fn step_label(step: usize) -> String {
-    format!("step{step:03}")
-}
-
-/// The mesh as it is seen: every vertex mapped, with its normal and its tangent.
-fn seen_mesh(view: &View, rest: &Mesh) -> Mesh {
-    let jobs = || rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
-    let positions = jobs()
-        .map(|&position| view.seen_position(position))
-        .collect();
-    let normals = rest.normals().map(|normals| {
-        let pairs = jobs().zip(normals);
-        pairs
-            .map(|(&position, &normal)| view.seen_normal(position, normal))
-            .collect()
-    });
-    let tangents = rest.tangents().map(|tangents| {
-        let pairs = jobs().zip(tangents);
-        // The map never turns orientation round: the bitangent keeps its sign.
-        let seen = |(position, tangent): (&_, &DVec4)| {
-            view.seen_tangent(*position, tangent.truncate())
-                .extend(tangent.w)
-        };
-        pairs.map(seen).collect()
-    });
-    rest.with_geometry(positions, normals, tangents)
-}
-
-fn doppler_factors(view: &View, rest: &Mesh) -> Vec<f64> {
-    let jobs = rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
-    jobs.map(|&position| view.doppler_factor(position))
-        .collect()
-}
-
 fn marker(name: &str, radius: f64) -> Part {
     let appearance = Appearance {
         color: Color([0xe7, 0x4c, 0x3c]),
@@ -335,49 +310,4 @@ fn marker(name: &str, radius: f64) -> Part {
     let mut part = model.parts.pop().expect("a sphere is one part");
     part.name = name.to_owned();
     part
-}
-
-/// Makes names that are unique and mean the same to every reader: ASCII letters, digits, `_` and `-`.
-#[derive(Default)]
-struct UniqueNames(HashSet<String>);
-
-impl UniqueNames {
-    /// `wanted` with other characters replaced by `_`, and with a number behind it if it was taken.
-    fn unique(&mut self, wanted: &str) -> String {
-        let plain: String = wanted
-            .chars()
-            .map(|c| {
-                if c.is_ascii_alphanumeric() || c == '-' {
-                    c
-                } else {
-                    '_'
-                }
-            })
-            .collect();
-        let mut name = plain.clone();
-        let mut number = 1;
-        while !self.0.insert(name.clone()) {
-            number += 1;
-            name = format!("{plain}_{number}");
-        }
-        name
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_plain_and_unique() {
-        let mut names = UniqueNames::default();
-        let made: Vec<_> = ["a b", "a.b", "a_b_2", "a_b", "Großes Rad", "-"]
-            .iter()
-            .map(|n| names.unique(n))
-            .collect();
-        assert_eq!(
-            made,
-            ["a_b", "a_b_2", "a_b_2_2", "a_b_3", "Gro_es_Rad", "-"]
-        );
-    }
 }

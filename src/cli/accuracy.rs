@@ -123,9 +123,9 @@ impl AccuracyArgs {
         (stage, predictions)
     }
 
-    /// Whether the photosurfaces are within their tolerances and the budget; says so where they are not.
-    pub(super) fn is_kept(&self, made: &[Facts], verbosity: Verbosity) -> bool {
-        let triangles: usize = made.iter().map(|facts| facts.triangles).sum();
+    /// Whether the photosurfaces, of so many triangles in all, are within their tolerances and the budget; says so
+    /// where they are not.
+    pub(super) fn is_kept(&self, made: &[Facts], triangles: usize, verbosity: Verbosity) -> bool {
         let within_budget = triangles as u64 <= self.max_triangles;
         if !within_budget {
             verbosity.note(format_args!(

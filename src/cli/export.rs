@@ -10,8 +10,9 @@ use std::time::Instant;
 use anyhow::{Context, bail, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
 use photosurface::{
-    Export, Facts, Format, Photosurface, Precision, Report, Scene, Stage, StageTime, Wanted,
-    WriteError, destination, step_label, write_glb, write_gltf, write_ply, write_whole,
+    Attribute, Export, Facts, Format, Photosurface, Playback, Precision, Report, Scene, Stage,
+    StageTime, Wanted, WriteError, destination, step_label, write_glb, write_gltf, write_ply,
+    write_whole,
 };
 
 use super::Status;
@@ -37,6 +38,14 @@ pub(super) struct ExportArgs {
     observer: ObserverArgs,
     #[command(flatten)]
     accuracy: AccuracyArgs,
+    /// Write these numbers for every vertex: doppler, emission_time, rest_position (overrides the scene)
+    #[arg(
+        long,
+        value_name = "A,A,...",
+        value_delimiter = ',',
+        help_heading = "Output"
+    )]
+    attributes: Vec<Attribute>,
     #[command(flatten)]
     output: OutputArgs,
     #[command(flatten)]
@@ -53,9 +62,36 @@ struct OutputArgs {
     /// Write a file for each step: out_step000.glb, out_step001.glb, ...
     #[arg(long)]
     split: bool,
+    /// Show the steps one after another: "frames", a mesh for each step, there during its frame alone; "morph", one
+    /// mesh for all steps, within the tolerance at each, that moves from one to the next (glTF)
+    #[arg(
+        long,
+        value_name = "HOW",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "frames",
+        conflicts_with = "split"
+    )]
+    animate: Option<Animate>,
+    /// Steps in a second of an animation
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 24.0,
+        requires = "animate",
+        allow_negative_numbers = true
+    )]
+    fps: f64,
     /// Write a JSON report of what was made and how long it took; - for stdout
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
+}
+
+/// How steps are shown one after another.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Animate {
+    Frames,
+    Morph,
 }
 
 pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
@@ -64,7 +100,12 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     output.check_streams(args.accuracy.level_count())?;
 
     let mut clock = Clock::default();
-    let input = Input::read(&args.input, &args.observer, args.verbosity)?;
+    let mut input = Input::read(&args.input, &args.observer, args.verbosity)?;
+    if !args.attributes.is_empty() {
+        let attributes = args.attributes.iter().copied().collect();
+        input.scene = input.scene.with_attributes(attributes);
+    }
+    let playback = output.playback(format, &input.scene)?;
     let path = output.path(&input.name);
     let steps = input.scene.steps().len();
     let levels: Vec<Level> = args
@@ -96,6 +137,7 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
             args,
             format,
             stage,
+            playback,
             &level.files,
             level.report.as_deref(),
             clock,
@@ -120,6 +162,7 @@ fn export(
     args: &ExportArgs,
     format: Format,
     stage: Stage,
+    playback: Option<Playback>,
     files: &[PathBuf],
     report: Option<&Path>,
     mut clock: Clock,
@@ -130,28 +173,42 @@ fn export(
         Format::Glb | Format::Gltf => Precision::Single,
     };
     let wanted = Wanted {
-        doppler_factors: format == Format::Ply,
+        attributes: format.attributes(stage.scene()),
         ..args.accuracy.wanted(precision)
     };
     let (stage, _) = args.accuracy.within_budget(stage, wanted, verbosity);
     clock.stop("predict");
 
     let progress = progress_bar(&stage, verbosity);
-    let steps = 0..stage.scene().steps().len();
     let mut made = Vec::new();
     let mut batch = Vec::new();
-    for step in steps {
+    let mut add = |photosurface: Photosurface, batch: &mut Vec<Photosurface>| {
+        verbosity.detail(describe(&photosurface.facts));
+        made.push(photosurface.facts.clone());
+        batch.push(photosurface);
+        progress.inc(1);
+    };
+    let morphing = matches!(playback, Some(Playback::Morph { .. }));
+    if morphing {
+        for photosurface in stage.morphing(wanted).flatten() {
+            add(photosurface, &mut batch);
+        }
+        clock.stop("photosurface");
+    }
+    let steps = if morphing {
+        0
+    } else {
+        stage.scene().steps().len()
+    };
+    for step in 0..steps {
         for photosurface in stage.photosurfaces(step, wanted) {
-            verbosity.detail(describe(&photosurface.facts));
-            made.push(photosurface.facts.clone());
-            batch.push(photosurface);
-            progress.inc(1);
+            add(photosurface, &mut batch);
         }
         clock.stop("photosurface");
         // A file for each step is written as soon as it can be, so that memory does not grow with them.
         if args.output.split {
             let batch = std::mem::take(&mut batch);
-            write_file(&files[step], format, &stage, &batch, || Ok(()))?;
+            write_file(&files[step], format, &stage, playback, &batch, || Ok(()))?;
             clock.stop("write");
         }
     }
@@ -163,7 +220,7 @@ fn export(
         write_report(&clock)?;
     } else {
         // Before the mesh appears: where the report fails, nothing is written.
-        write_file(&files[0], format, &stage, &batch, || {
+        write_file(&files[0], format, &stage, playback, &batch, || {
             clock.stop("write");
             write_report(&clock)
         })?;
@@ -173,10 +230,13 @@ fn export(
     for (name, seconds) in &clock.stages {
         verbosity.detail(format_args!("{name}: {seconds:.3} s"));
     }
+    // Where all steps are one mesh, its triangles are there once.
+    let meshes = made.iter().filter(|facts| !morphing || facts.step == 0);
+    let triangles = meshes.map(|facts| facts.triangles).sum();
     if !is_stdout(&files[0]) {
-        verbosity.result(summary(files, format, &made));
+        verbosity.result(summary(files, format, made.len(), triangles));
     }
-    Ok(args.accuracy.is_kept(&made, verbosity))
+    Ok(args.accuracy.is_kept(&made, triangles, verbosity))
 }
 
 /// `out.glb` and `_lod0` make `out_lod0.glb`; a stream stays what it is.
@@ -213,6 +273,36 @@ impl OutputArgs {
                 path.display()
             ),
         }
+    }
+
+    /// How the steps are shown one after another, if that is asked for and there is something to show.
+    fn playback(&self, format: Format, scene: &Scene) -> anyhow::Result<Option<Playback>> {
+        let Some(animate) = self.animate else {
+            return Ok(None);
+        };
+        ensure!(
+            format != Format::Ply,
+            "--animate: a .ply has no time, expected .glb or .gltf"
+        );
+        ensure!(
+            scene.steps().len() > 1,
+            "--animate: the scene has one step, expected at least two, such as --steps -6..6/7"
+        );
+        let frames_per_second = self.fps;
+        ensure!(
+            (1e-3..=1e3).contains(&frames_per_second),
+            "--fps is {frames_per_second}, expected a number from 0.001 to 1000"
+        );
+        Ok(Some(match animate {
+            Animate::Frames => Playback::Frames { frames_per_second },
+            Animate::Morph => {
+                ensure!(
+                    scene.attributes().is_empty(),
+                    "--animate=morph shows one mesh, and attributes differ from step to step; use --animate=frames"
+                );
+                Playback::Morph { frames_per_second }
+            }
+        }))
     }
 
     /// Stdout holds one thing.
@@ -310,6 +400,7 @@ fn write_file(
     path: &Path,
     format: Format,
     stage: &Stage,
+    playback: Option<Playback>,
     photosurfaces: &[Photosurface],
     before_it_appears: impl FnOnce() -> Result<(), WriteError>,
 ) -> anyhow::Result<()> {
@@ -318,6 +409,7 @@ fn write_file(
         scene: &scene,
         marker: stage.marker(),
         photosurfaces,
+        playback,
     };
     if is_stdout(path) {
         print(|out| Ok(write_glb(&export, out)?))?;
@@ -387,8 +479,7 @@ fn write_report(
     }
 }
 
-fn summary(files: &[PathBuf], format: Format, made: &[Facts]) -> String {
-    let triangles: usize = made.iter().map(|facts| facts.triangles).sum();
+fn summary(files: &[PathBuf], format: Format, photosurfaces: usize, triangles: usize) -> String {
     let mut bytes = 0;
     for file in files {
         bytes += fs::metadata(file).map_or(0, |data| data.len());
@@ -403,7 +494,7 @@ fn summary(files: &[PathBuf], format: Format, made: &[Facts]) -> String {
     };
     format!(
         "{place}: {}, {}, {}",
-        counted(made.len(), "photosurface"),
+        counted(photosurfaces, "photosurface"),
         counted(triangles, "triangle"),
         size(bytes)
     )

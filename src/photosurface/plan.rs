@@ -5,12 +5,13 @@ use std::borrow::Cow;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{Placed, Wanted, seen_mesh};
+use super::seen::seen_mesh;
+use super::{Placed, Wanted};
 use crate::light_cone::View;
 use crate::mesh::{Mesh, Part, Shape};
 use crate::scene::Tolerance;
 use crate::tessellate::{
-    Allowance, Bounds, Certificate, Counts, Precision, local_stretch, minimum_triangles,
+    Allowance, Bounds, Certificate, Counts, Precision, Singles, local_stretch, minimum_triangles,
     predicted_pieces, refine, rounding_bound, triangle_gap,
 };
 
@@ -55,6 +56,8 @@ pub(super) struct Plan<'a> {
     /// The parts as they were placed, as seen.
     seen: Vec<Mesh>,
     precision: Precision,
+    /// The box around all steps where they share one mesh in a file, as morph targets.
+    travel: Option<(DVec3, DVec3)>,
 }
 
 /// What an object will take, and whether its tolerance can be kept at all.
@@ -113,6 +116,7 @@ impl<'a> Plan<'a> {
             deviation: 0.0,
             seen,
             precision: wanted.precision,
+            travel: None,
         };
         if let Some(shaped) = &placed.shaped {
             let mesh = placed.parts[0].1.mesh();
@@ -126,6 +130,11 @@ impl<'a> Plan<'a> {
             plan.shape = Some(shape).filter(|shape| *shape != shaped.shape);
         }
         plan
+    }
+
+    /// How the object is seen.
+    pub(super) fn view(&self) -> &View {
+        &self.view
     }
 
     /// About how many triangles the object will have, and whether they will be within the tolerance.
@@ -217,6 +226,68 @@ impl<'a> Plan<'a> {
             .collect()
     }
 
+    /// Carries out the plans of one object for all steps with one mesh at rest, which is refined for one step after
+    /// the other; for each part its surfaces at all steps.
+    ///
+    /// What is within the tolerance at one step stays so when it is refined for another: the gap of a triangle is
+    /// how far a chord plane is above the convex `r`, and that of a piece of it is below that of the whole.
+    pub(super) fn carry_out_together(mut plans: Vec<Self>, wanted: Wanted) -> Vec<Vec<Surface>> {
+        let shapes = plans
+            .iter()
+            .filter_map(|plan| Some((plan.shape.clone()?, plan.deviation)));
+        if let Some((shape, deviation)) = shapes.max_by_key(|(shape, _)| shape.triangle_count()) {
+            for plan in &mut plans {
+                (plan.shape, plan.deviation) = (Some(shape.clone()), deviation);
+            }
+        }
+        let Some(first) = plans.first_mut() else {
+            return vec![];
+        };
+        let before: Vec<(String, Part)> = first.draft().parts.into_owned();
+        let mut parts: Vec<(String, Part)> = before.clone();
+        let limits = Self::travelling(&mut plans, &parts);
+        for (plan, (_, limits)) in plans.iter().zip(&limits) {
+            if !wanted.subdivide || plan.view.relative_velocity().rapidity() == 0.0 {
+                continue;
+            }
+            for (_, part) in &mut parts {
+                let refined = refine(part.mesh(), plan.view.observer_rest(), &limits.allowance);
+                *part = part.clone().with_mesh(refined.mesh);
+            }
+        }
+        let seen = Self::travelling(&mut plans, &parts);
+        let surface =
+            |(index, ((name, part), (_, before))): (usize, (&(String, Part), &(String, Part)))| {
+                let at_step = |(plan, (seen, limits)): (&Self, &(Vec<Mesh>, Limits))| {
+                    let (mesh, seen) = (part.mesh(), &seen[index]);
+                    let gap = plan.largest_gap(mesh);
+                    Surface {
+                        name: name.clone(),
+                        part: part.clone(),
+                        certificate: plan.certificate(limits, before.mesh(), mesh, seen, gap),
+                        seen: seen.clone(),
+                    }
+                };
+                plans.iter().zip(&seen).map(at_step).collect()
+            };
+        parts.iter().zip(&before).enumerate().map(surface).collect()
+    }
+
+    /// Parts as they are seen at each step, with what is allowed there when all steps share one offset in a file.
+    fn travelling(plans: &mut [Self], parts: &[(String, Part)]) -> Vec<(Vec<Mesh>, Limits)> {
+        let seen: Vec<Vec<Mesh>> = plans
+            .iter()
+            .map(|plan| seen_meshes(&plan.view, parts))
+            .collect();
+        let travel = bounds(seen.iter().flatten());
+        let limits = plans.iter_mut().zip(&seen).map(|(plan, seen)| {
+            plan.travel = travel;
+            plan.limits(parts, seen, 1.0)
+        });
+        let limits: Vec<Limits> = limits.collect();
+        seen.into_iter().zip(limits).collect()
+    }
+
     /// The certificate of a mesh that was refined to another, with the largest gap `e`.
     fn certificate(
         &self,
@@ -301,7 +372,14 @@ impl<'a> Plan<'a> {
     fn rounding(&self, mesh: &Mesh, seen: &Mesh) -> f64 {
         let (center, radius) = ball(mesh);
         let stretch = self.view.stretch_bound(center, radius);
-        rounding_bound(&self.view, mesh, seen, stretch, self.precision)
+        let in_file = match (self.precision, self.travel.or(seen.bounds())) {
+            (Precision::Single, Some((low, high))) => Some(Singles {
+                extent: high - low,
+                roundings: if self.travel.is_some() { 3.0 } else { 1.0 },
+            }),
+            _ => None,
+        };
+        rounding_bound(&self.view, mesh, seen, stretch, in_file)
     }
 
     fn largest_gap(&self, mesh: &Mesh) -> f64 {
@@ -374,11 +452,7 @@ impl<'a> Plan<'a> {
 
 /// A tolerance as a length; an angle at the nearest vertex.
 fn length_of(tolerance: Tolerance, seen: &[Mesh]) -> f64 {
-    let diagonal = || {
-        let bounds = seen.iter().filter_map(Mesh::bounds);
-        let all = bounds.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)));
-        all.map_or(0.0, |(low, high)| low.distance(high))
-    };
+    let diagonal = || bounds(seen).map_or(0.0, |(low, high)| low.distance(high));
     match tolerance {
         Tolerance::Absolute(length) => length,
         Tolerance::Relative(fraction) => fraction * diagonal(),
@@ -402,6 +476,12 @@ fn seen_meshes(view: &View, parts: &[(String, Part)]) -> Vec<Mesh> {
 fn shrunk(corners: [DVec3; 3], parts: f64) -> [DVec3; 3] {
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     corners.map(|corner| middle + (corner - middle) / parts.sqrt())
+}
+
+/// The box around meshes.
+fn bounds<'m>(meshes: impl IntoIterator<Item = &'m Mesh>) -> Option<(DVec3, DVec3)> {
+    let boxes = meshes.into_iter().filter_map(Mesh::bounds);
+    boxes.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
 }
 
 /// A ball around a mesh.

@@ -2,11 +2,13 @@
 //!
 //! A scene is text and numbers only. Files that it names are read by the `io` room.
 
+mod attributes;
 mod built_in;
 mod forms;
 mod json;
 mod tolerance;
 
+pub use attributes::{Attribute, Attributes, UnknownAttribute};
 pub use built_in::{BUILT_IN_SCENES, BuiltInScene};
 pub use json::SceneError;
 pub use tolerance::{Tolerance, ToleranceError};
@@ -38,6 +40,7 @@ pub struct Scene {
     objects: Vec<Object>,
     steps: Vec<f64>,
     tolerance: Tolerance,
+    attributes: Attributes,
 }
 
 /// Who sees the scene.
@@ -161,6 +164,7 @@ impl Scene {
             objects,
             steps: vec![0.0],
             tolerance: Tolerance::default(),
+            attributes: Attributes::default(),
         })
     }
 
@@ -202,6 +206,18 @@ impl Scene {
             object.tolerance = None;
         }
         self
+    }
+
+    /// The scene with these attributes asked for, and no others.
+    #[must_use]
+    pub fn with_attributes(mut self, attributes: Attributes) -> Self {
+        self.attributes = attributes;
+        self
+    }
+
+    /// What is asked for at every vertex.
+    pub fn attributes(&self) -> Attributes {
+        self.attributes
     }
 
     /// How far the photosurface of an object may be from the true one.
@@ -312,6 +328,9 @@ struct SceneFields {
     /// How far photosurfaces may be from the true ones; a thousandth of their diagonal if absent.
     #[serde(default)]
     tolerance: Tolerance,
+    /// What is computed and written for every vertex beside its place; nothing if absent.
+    #[serde(default)]
+    attributes: Attributes,
 }
 
 impl TryFrom<FromObject<SceneFields>> for Scene {
@@ -322,6 +341,7 @@ impl TryFrom<FromObject<SceneFields>> for Scene {
         Ok(Self {
             title: fields.title,
             tolerance: fields.tolerance,
+            attributes: fields.attributes,
             ..scene
         })
     }

@@ -60,13 +60,13 @@ pub enum Precision {
 /// size, which the map stretches by at most `stretch`. The map itself adds at most 16 epsilon of the place and
 /// what a direction known to its last place makes of it, 4 epsilon of `stretch r`. In a file with `f32` each
 /// coordinate relative to the offset, at most half the extent and a sixteenth of the largest extent, is
-/// rounded once.
+/// rounded; morph targets add a difference, at most twice as large, and so round it three times.
 pub(crate) fn rounding_bound(
     view: &View,
     rest: &Mesh,
     seen: &Mesh,
     stretch: f64,
-    precision: Precision,
+    in_file: Option<Singles>,
 ) -> f64 {
     let largest = |points: &[DVec3]| {
         points
@@ -77,14 +77,20 @@ pub(crate) fn rounding_bound(
     let size_rest = largest(rest.positions()) + view.observer_rest().length();
     let size_seen = largest(seen.positions());
     let double = f64::EPSILON * (16.0 * stretch * size_rest + 16.0 * size_seen);
-    match (precision, seen.bounds()) {
-        (Precision::Single, Some((low, high))) => {
-            let half = (0.5 * high - 0.5 * low).abs();
-            let largest_local = (half + half.max_element() / 16.0).length();
-            double + largest_local * (0.5 * f64::from(f32::EPSILON)) * 1.01
-        }
-        _ => double,
-    }
+    let Some(Singles { extent, roundings }) = in_file else {
+        return double;
+    };
+    let largest_local = (0.5 * extent + extent.max_element() / 32.0).length();
+    double + roundings * largest_local * (0.5 * f64::from(f32::EPSILON)) * 1.01
+}
+
+/// Positions as `f32` relative to an offset.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Singles {
+    /// Of all positions with that offset.
+    pub(crate) extent: DVec3,
+    /// How many times they are rounded.
+    pub(crate) roundings: f64,
 }
 
 /// A bound of how much anything near a triangle is stretched: in the ball that reaches twice as far from its

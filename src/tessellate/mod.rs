@@ -17,7 +17,7 @@ mod refine;
 mod sky;
 
 pub(crate) use allowance::Allowance;
-pub(crate) use certificate::{Bounds, Counts, local_stretch, rounding_bound};
+pub(crate) use certificate::{Bounds, Counts, Singles, local_stretch, rounding_bound};
 pub use certificate::{Certificate, Precision};
 pub use gap::{edge_gap, triangle_gap, triangle_gap_place};
 pub(crate) use minimum::{minimum_triangles, predicted_pieces};

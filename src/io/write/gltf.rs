@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::io::Write;
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 use gltf::binary::{Glb, Header};
 use gltf::json::validation::{Checked, USize64};
 use gltf::json::{self, Index, accessor, buffer, extras::RawValue, mesh::Semantic};
@@ -16,8 +16,9 @@ use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::pack::{Packed, pack};
-use super::{Export, WriteError};
+use super::layer::{Scalar, asked_for, layers};
+use super::pack::{Local, Packed, pack};
+use super::{Export, Playback, WriteError};
 use crate::mesh::{AlphaMode, Filter, Image, Material, Mesh, Sampler, Texture, Wrap};
 
 /// What may not stand in a relative reference as it is.
@@ -90,26 +91,29 @@ fn document(
     binary_name: Option<&str>,
 ) -> Result<(Value, Vec<u8>), WriteError> {
     let mut document = Document::default();
-    if let Some(marker) = export.marker {
-        document.add(&marker.name, marker.mesh(), marker.material.as_ref(), None)?;
-    }
-    for photosurface in export.photosurfaces {
-        let extras = Some(raw(&photosurface.facts));
-        let material = photosurface.material.as_ref();
-        document.add(
-            &photosurface.facts.name,
-            &photosurface.mesh,
-            material,
-            extras,
-        )?;
+    match export.playback {
+        Some(Playback::Morph { frames_per_second }) => {
+            document.add_morphing(export, frames_per_second)?;
+        }
+        playback => {
+            let asked_for = asked_for(export);
+            for layer in layers(export) {
+                let scalars = layer.scalars(asked_for)?;
+                let extras = layer.facts.map(raw);
+                document.add(layer.name, &[layer.mesh], layer.material, &scalars, extras)?;
+            }
+            if let Some(Playback::Frames { frames_per_second }) = playback {
+                document.animate_frames(export, frames_per_second);
+            }
+        }
     }
     Ok(document.finish(export, binary_name))
 }
 
 /// A glTF document in the making.
 #[derive(Default)]
-struct Document {
-    root: json::Root,
+pub(super) struct Document {
+    pub(super) root: json::Root,
     binary: Vec<u8>,
     /// The `f64` translation of each node; glTF's JSON holds it, `gltf::json` does not.
     translations: Vec<DVec3>,
@@ -120,26 +124,31 @@ struct Document {
     samplers: Vec<Sampler>,
     textures: Vec<(Index<json::Image>, Index<json::texture::Sampler>)>,
     default_material: Option<Index<json::Material>>,
+    /// Of the one animation, as long as it is being made.
+    pub(super) tracks: (Vec<json::animation::Channel>, Vec<json::animation::Sampler>),
 }
 
 impl Document {
-    fn add(
+    /// A node with a mesh; `steps` are its geometry at the first step and at those that morph targets are for.
+    pub(super) fn add(
         &mut self,
         name: &str,
-        mesh: &Mesh,
+        steps: &[&Mesh],
         material: Option<&Arc<Material>>,
+        scalars: &[Scalar<'_>],
         extras: json::Extras,
-    ) -> Result<(), WriteError> {
+    ) -> Result<Index<json::Node>, WriteError> {
+        let mesh = steps[0];
         if mesh.triangles().is_empty() {
             return Err(WriteError::Empty(name.to_owned()));
         }
+        let positions: Vec<_> = steps.iter().map(|mesh| mesh.positions()).collect();
         let Packed {
             offset,
             local,
-            min,
-            max,
-        } = pack(name, mesh.positions())?;
-        let positions = self.accessor(&local, accessor::Type::Vec3, Some((min, max)));
+            differences,
+        } = pack(name, &positions)?;
+        let positions = self.local(&local);
         let mut attributes = vec![(Semantic::Positions, positions)];
         if let Some(normals) = mesh.normals() {
             let normals: Vec<[f32; 3]> = normals
@@ -185,6 +194,16 @@ impl Document {
             });
             attributes.push((Semantic::Colors(0), accessor));
         }
+        for scalar in scalars {
+            let values: Vec<[f32; 1]> = scalar.values.iter().map(|&v| [v as f32]).collect();
+            let accessor = self.accessor(&values, accessor::Type::Scalar, None);
+            let name = scalar.name.to_ascii_uppercase();
+            attributes.push((Semantic::Extras(name), accessor));
+        }
+        let targets = steps[1..].iter().zip(&differences);
+        let targets: Vec<_> = targets
+            .map(|(step, difference)| self.morph_target(mesh, step, difference))
+            .collect();
         let triangles = mesh.triangles();
         let indices = self.shared(address(triangles), |document| {
             let bytes: Vec<u8> = triangles
@@ -210,7 +229,7 @@ impl Document {
             indices: Some(indices),
             material: Some(material),
             mode: Checked::Valid(json::mesh::Mode::Triangles),
-            targets: None,
+            targets: Some(targets).filter(|targets| !targets.is_empty()),
         };
         let mesh = self.root.push(json::Mesh {
             extensions: None,
@@ -219,14 +238,40 @@ impl Document {
             primitives: vec![primitive],
             weights: None,
         });
-        self.root.push(json::Node {
+        self.translations.push(offset);
+        Ok(self.root.push(json::Node {
             mesh: Some(mesh),
             name: Some(name.to_owned()),
             extras,
             ..json::Node::default()
+        }))
+    }
+
+    /// What is to be added to the first step's geometry to have that of another.
+    fn morph_target(
+        &mut self,
+        first: &Mesh,
+        step: &Mesh,
+        difference: &Local,
+    ) -> json::mesh::MorphTarget {
+        let normals = first.normals().zip(step.normals()).map(|(from, to)| {
+            let pairs = from.iter().zip(to);
+            let differences = pairs.map(|(&from, &to)| unit_or_up(to) - unit_or_up(from));
+            let differences: Vec<_> = differences.map(|d| d.as_vec3().to_array()).collect();
+            self.accessor(&differences, accessor::Type::Vec3, None)
         });
-        self.translations.push(offset);
-        Ok(())
+        let tangents = first.tangents().zip(step.tangents()).map(|(from, to)| {
+            let direction = |tangent: &DVec4| unit_or_up(tangent.truncate());
+            let pairs = from.iter().zip(to);
+            let differences = pairs.map(|(from, to)| direction(to) - direction(from));
+            let differences: Vec<_> = differences.map(|d| d.as_vec3().to_array()).collect();
+            self.accessor(&differences, accessor::Type::Vec3, None)
+        });
+        json::mesh::MorphTarget {
+            positions: Some(self.local(difference)),
+            normals,
+            tangents,
+        }
     }
 
     fn finish(mut self, export: &Export<'_>, binary_name: Option<&str>) -> (Value, Vec<u8>) {
@@ -268,6 +313,11 @@ impl Document {
         accessor
     }
 
+    fn local(&mut self, local: &Local) -> Index<json::Accessor> {
+        let bounds = Some((local.min, local.max));
+        self.accessor(&local.values, accessor::Type::Vec3, bounds)
+    }
+
     fn accessor<const N: usize>(
         &mut self,
         values: &[[f32; N]],
@@ -288,6 +338,28 @@ impl Document {
             false,
             bounds,
         )
+    }
+
+    /// Numbers that are no attributes of vertices: key frames.
+    pub(super) fn keys<const N: usize>(
+        &mut self,
+        values: &[[f32; N]],
+        shape: accessor::Type,
+    ) -> Index<json::Accessor> {
+        let bytes: Vec<u8> = (values.as_flattened().iter())
+            .flat_map(|value| value.to_le_bytes())
+            .collect();
+        let view = self.view(&bytes, None);
+        let bounds = |least: fn(f32, f32) -> f32, start: f32| {
+            let axis = |axis: usize| values.iter().fold(start, |b, v| least(b, v[axis]));
+            (0..N).map(axis).collect()
+        };
+        let bounds = (
+            bounds(f32::min, f32::INFINITY),
+            bounds(f32::max, f32::NEG_INFINITY),
+        );
+        let kind = (accessor::ComponentType::F32, shape);
+        self.push_accessor(view, values.len(), kind, false, Some(bounds))
     }
 
     fn push_accessor(
@@ -450,7 +522,7 @@ impl Document {
     }
 }
 
-fn raw(facts: &impl Serialize) -> Box<RawValue> {
+pub(super) fn raw(facts: &impl Serialize) -> Box<RawValue> {
     serde_json::value::to_raw_value(facts).expect("facts are names and numbers")
 }
 

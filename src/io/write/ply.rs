@@ -1,7 +1,8 @@
 //! Binary PLY with positions in double precision: for MeshLab, and where `f32` is not enough.
 //!
 //! The format has one list of vertices: all photosurfaces of a file become one mesh. `quality`, the one
-//! scalar that MeshLab reads, is the Doppler factor. Materials and texture coordinates stay behind.
+//! scalar that MeshLab reads, is the Doppler factor; what else is known of vertices has properties of its own.
+//! Materials and texture coordinates stay behind.
 //!
 //! Source: G. Turk, *The PLY Polygon File Format* (1994).
 
@@ -9,17 +10,18 @@ use std::io::Write;
 
 use glam::{DVec3, Vec4};
 
+use super::layer::{Layer, Scalar, asked_for, layers};
 use super::{Export, WriteError};
 use crate::mesh::Mesh;
 
-/// Writes one PLY; every photosurface must have its Doppler factors.
+/// Writes one PLY, all photosurfaces at once.
 ///
 /// # Errors
 ///
-/// A mesh without triangles, a Doppler factor that `f32` cannot hold, more than 2^32 - 1 vertices, or the
+/// A mesh without triangles, a number at a vertex that `f32` cannot hold, more than 2^32 - 1 vertices, or the
 /// writer fails.
 pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), WriteError> {
-    let layers = layers(export);
+    let layers: Vec<Layer<'_>> = layers(export).collect();
     let vertices: usize = layers
         .iter()
         .map(|layer| layer.mesh.positions().len())
@@ -31,8 +33,11 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
     if vertices > u32::MAX as usize {
         return Err(WriteError::TooManyVertices(vertices));
     }
+    let asked_for = asked_for(export);
+    let mut scalars = vec![];
     for layer in &layers {
-        check_numbers(layer.name, layer.mesh, layer.doppler_factors)?;
+        check_positions(layer.name, layer.mesh)?;
+        scalars.push(layer.scalars(asked_for)?);
     }
     let with_colors = layers.iter().any(|layer| layer.mesh.colors().is_some());
 
@@ -40,9 +45,12 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
         writer,
         "ply\nformat binary_little_endian 1.0\ncomment {}\nelement vertex {vertices}\n\
          property double x\nproperty double y\nproperty double z\n\
-         property float nx\nproperty float ny\nproperty float nz\nproperty float quality\n",
+         property float nx\nproperty float ny\nproperty float nz\n",
         export.scene.generator
     )?;
+    for scalar in scalars.first().into_iter().flatten() {
+        writeln!(writer, "property float {}", property(scalar))?;
+    }
     if with_colors {
         writer.write_all(
             b"property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n",
@@ -53,8 +61,8 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
         "element face {triangles}\nproperty list uchar uint vertex_indices\nend_header\n"
     )?;
 
-    for layer in &layers {
-        layer.write_vertices(&mut writer, with_colors)?;
+    for (layer, scalars) in layers.iter().zip(&scalars) {
+        write_vertices(&mut writer, layer, scalars, with_colors)?;
     }
     let mut first = 0u32;
     for layer in &layers {
@@ -70,86 +78,59 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
     Ok(())
 }
 
-/// A mesh of the file with its scalar.
-struct Layer<'a> {
-    name: &'a str,
-    mesh: &'a Mesh,
-    /// `None` for the observer's own marker: nothing moves.
-    doppler_factors: Option<&'a [f64]>,
-}
-
-fn layers<'a>(export: &'a Export<'_>) -> Vec<Layer<'a>> {
-    let marker = export.marker.map(|marker| Layer {
-        name: &marker.name,
-        mesh: marker.mesh(),
-        doppler_factors: None,
-    });
-    let photosurfaces = export.photosurfaces.iter().map(|photosurface| Layer {
-        name: &photosurface.facts.name,
-        mesh: &photosurface.mesh,
-        doppler_factors: photosurface.doppler_factors.as_deref(),
-    });
-    marker.into_iter().chain(photosurfaces).collect()
+/// MeshLab shows `quality`, and nothing that is called anything else.
+fn property<'a>(scalar: &Scalar<'a>) -> &'a str {
+    match scalar.name {
+        "doppler" => "quality",
+        other => other,
+    }
 }
 
 /// Refuses what the file cannot hold.
 ///
 /// # Errors
 ///
-/// No triangles, a place that is no number, or a Doppler factor that `f32` cannot hold.
-pub(super) fn check_numbers(
-    name: &str,
-    mesh: &Mesh,
-    doppler_factors: Option<&[f64]>,
-) -> Result<(), WriteError> {
+/// No triangles, or a place that is no number.
+pub(super) fn check_positions(name: &str, mesh: &Mesh) -> Result<(), WriteError> {
     let name = || name.to_owned();
     if mesh.triangles().is_empty() {
         return Err(WriteError::Empty(name()));
     }
-    if let Some(vertex) = mesh.positions().iter().position(|p| !p.is_finite()) {
-        return Err(WriteError::Overflow {
+    match mesh.positions().iter().position(|p| !p.is_finite()) {
+        Some(vertex) => Err(WriteError::Overflow {
             name: name(),
             vertex,
-        });
-    }
-    let limit = f64::from(f32::MAX);
-    let factors = doppler_factors.unwrap_or_default();
-    match factors.iter().position(|factor| !(*factor <= limit)) {
-        Some(vertex) => Err(WriteError::Range {
-            name: name(),
-            quantity: "the Doppler factor",
-            vertex,
-            value: factors[vertex],
-            limit,
         }),
         None => Ok(()),
     }
 }
 
-impl Layer<'_> {
-    fn write_vertices(&self, writer: &mut impl Write, with_colors: bool) -> Result<(), WriteError> {
-        for (vertex, position) in self.mesh.positions().iter().enumerate() {
-            let normal = self
-                .mesh
-                .normals()
-                .map_or(DVec3::ZERO, |normals| normals[vertex]);
-            let quality = self.doppler_factors.map_or(1.0, |factors| factors[vertex]);
-            for coordinate in position.to_array() {
-                writer.write_all(&coordinate.to_le_bytes())?;
-            }
-            for value in [normal.x, normal.y, normal.z, quality] {
-                writer.write_all(&(value as f32).to_le_bytes())?;
-            }
-            if with_colors {
-                let color = self
-                    .mesh
-                    .colors()
-                    .map_or(Vec4::ONE, |colors| colors[vertex]);
-                writer.write_all(&shown_color(color))?;
-            }
+fn write_vertices(
+    writer: &mut impl Write,
+    layer: &Layer<'_>,
+    scalars: &[Scalar<'_>],
+    with_colors: bool,
+) -> Result<(), WriteError> {
+    let mesh = layer.mesh;
+    for (vertex, position) in mesh.positions().iter().enumerate() {
+        let normal = mesh
+            .normals()
+            .map_or(DVec3::ZERO, |normals| normals[vertex]);
+        for coordinate in position.to_array() {
+            writer.write_all(&coordinate.to_le_bytes())?;
         }
-        Ok(())
+        for value in normal.to_array() {
+            writer.write_all(&(value as f32).to_le_bytes())?;
+        }
+        for scalar in scalars {
+            writer.write_all(&(scalar.values[vertex] as f32).to_le_bytes())?;
+        }
+        if with_colors {
+            let color = mesh.colors().map_or(Vec4::ONE, |colors| colors[vertex]);
+            writer.write_all(&shown_color(color))?;
+        }
     }
+    Ok(())
 }
 
 /// Red, green, blue and opacity as PLY's readers show them: sRGB (IEC 61966-2-1), opacity as it is.

@@ -1,7 +1,8 @@
 //! Whether the numbers of a file can hold what is seen, before any of the work.
 
+use super::layer::Layer;
 use super::pack::pack;
-use super::ply::check_numbers;
+use super::ply::check_positions;
 use super::{Format, WriteError};
 use crate::photosurface::{Stage, Wanted};
 
@@ -15,7 +16,7 @@ impl Format {
     pub fn check_range(self, stage: &Stage) -> Result<(), WriteError> {
         let wanted = Wanted {
             subdivide: false,
-            doppler_factors: self == Self::Ply,
+            attributes: self.attributes(stage.scene()),
             ..Wanted::default()
         };
         let steps = 0..stage.scene().steps().len();
@@ -23,11 +24,10 @@ impl Format {
             for photosurface in stage.photosurfaces(step, wanted) {
                 let (name, mesh) = (&photosurface.facts.name, &photosurface.mesh);
                 match self {
-                    Self::Glb | Self::Gltf => drop(pack(name, mesh.positions())?),
-                    Self::Ply => {
-                        check_numbers(name, mesh, photosurface.doppler_factors.as_deref())?;
-                    }
+                    Self::Glb | Self::Gltf => drop(pack(name, &[mesh.positions()])?),
+                    Self::Ply => check_positions(name, mesh)?,
                 }
+                Layer::from(&photosurface).scalars(Some(&photosurface.vertex_data))?;
             }
         }
         Ok(())

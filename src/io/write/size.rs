@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::WriteError;
 use crate::mesh::{Mesh, Part};
 use crate::photosurface::Stage;
-use crate::scene::{Object, Source};
+use crate::scene::{Attributes, Object, Scene, Source};
 
 /// A format that photosurfaces are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +19,15 @@ pub enum Format {
 }
 
 impl Format {
+    /// What a file of the scene holds of every vertex: what the scene asks for, and in a PLY the Doppler factor.
+    pub fn attributes(self, scene: &Scene) -> Attributes {
+        let asked_for = scene.attributes();
+        Attributes {
+            doppler: asked_for.doppler || self == Self::Ply,
+            ..asked_for
+        }
+    }
+
     /// How many bytes a file of `steps` steps of the stage has at least: its numbers and images, without the
     /// words around them, which are few.
     ///
@@ -119,7 +128,7 @@ mod tests {
     use crate::io::{Export, load_models, write_glb, write_ply};
     use crate::mesh::Model;
     use crate::photosurface::Wanted;
-    use crate::scene::{Observer, Scene};
+    use crate::scene::Observer;
 
     #[test]
     fn the_least_size_is_just_below_that_of_the_file() {
@@ -139,7 +148,7 @@ mod tests {
         let scene = Scene::new(Observer::default(), objects).unwrap();
         let stage = Stage::new(scene.with_steps(vec![0.0, 1.0, 2.0]).unwrap(), models);
         let wanted = Wanted {
-            doppler_factors: true,
+            attributes: Format::Ply.attributes(stage.scene()),
             ..Wanted::default()
         };
         let photosurfaces: Vec<_> = (0..3)
@@ -149,6 +158,7 @@ mod tests {
             scene: &stage.facts(),
             marker: None,
             photosurfaces: &photosurfaces,
+            playback: None,
         };
         let (mut glb, mut ply) = (vec![], vec![]);
         write_glb(&export, &mut glb).unwrap();

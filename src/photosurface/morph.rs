@@ -1,0 +1,31 @@
+//! Photosurfaces of all steps with the same triangles: what morph targets need.
+
+use super::plan::Plan;
+use super::{Photosurface, Stage, Wanted};
+
+impl Stage {
+    /// The photosurfaces of every part at all steps, with the same triangles at each: the mesh at rest is refined
+    /// until it is within the tolerance at every step.
+    ///
+    /// For each part, in the order of the scene, one photosurface a step. Their certificates are for a file in which
+    /// all steps share one offset, as [`Playback::Morph`](crate::Playback::Morph) writes it.
+    pub fn morphing(&self, wanted: Wanted) -> impl Iterator<Item = Vec<Photosurface>> {
+        let objects = self.scene.objects().iter().zip(&self.objects);
+        objects.flat_map(move |(object, placed)| {
+            let steps = 0..self.scene.steps().len();
+            let plans: Vec<Plan<'_>> = steps
+                .map(|step| self.plan(object, placed, step, wanted))
+                .collect();
+            let views: Vec<_> = plans.iter().map(|plan| *plan.view()).collect();
+            let parts = Plan::carry_out_together(plans, wanted).into_iter();
+            parts.map(move |surfaces| {
+                let steps = surfaces.into_iter().zip(&views).enumerate();
+                steps
+                    .map(|(step, (surface, view))| {
+                        self.photosurface(object, step, view, surface, wanted)
+                    })
+                    .collect()
+            })
+        })
+    }
+}
