@@ -3,6 +3,7 @@
 mod error;
 mod file;
 mod gltf;
+mod materials;
 mod pack;
 mod ply;
 mod report;
