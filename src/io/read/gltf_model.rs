@@ -87,6 +87,11 @@ fn note_other_content(document: &Document, notes: &mut Vec<Note>) {
             add_note(notes, Note::NotCarried { what });
         }
     }
+    // What this program writes there, it makes anew.
+    let generator = root.asset.generator.as_deref().unwrap_or_default();
+    if generator.starts_with(concat!(env!("CARGO_PKG_NAME"), " ")) {
+        return;
+    }
     let with_extras = [
         (
             root.nodes.iter().filter(|n| n.extras.is_some()).count(),
