@@ -63,8 +63,8 @@ pub enum MaterialError {
     Property {
         /// Path to the property.
         place: String,
-        /// What stands there.
-        found: Value,
+        /// What stands there, as JSON.
+        found: String,
         /// What glTF has there.
         expected: &'static str,
     },

@@ -138,22 +138,22 @@ impl Entry {
             "pbrMetallicRoughness": surface,
             "doubleSided": true,
         });
-        if opacity < 1.0 || (has_picture && self.has_opacity_in_its_picture()) {
+        if opacity < 1.0 || (has_picture && self.is_base_color("map_d")) {
             properties["alphaMode"] = "BLEND".into();
         }
         if let Some(map) = self.map("norm") {
             if let Some(info) = slot("norm", &map, false, notes) {
                 properties["normalTexture"] = info;
             }
-        } else if let Some((statement, map)) = self.bumps() {
-            if let Some(mut info) = slot(statement, &map, true, notes) {
-                if map.strength != 1.0 {
-                    info["scale"] = map.strength.into();
-                }
-                properties["normalTexture"] = info;
-                let material = self.name.clone();
-                add_note(notes, Note::BumpAsNormals { material });
+        } else if let Some((statement, map)) = self.bumps()
+            && let Some(mut info) = slot(statement, &map, true, notes)
+        {
+            if map.strength != 1.0 {
+                info["scale"] = map.strength.into();
             }
+            properties["normalTexture"] = info;
+            let material = self.name.clone();
+            add_note(notes, Note::BumpAsNormals { material });
         }
         let glow = self.map("map_Ke");
         let glow = glow.and_then(|map| slot("map_Ke", &map, false, notes));
@@ -199,9 +199,6 @@ impl Entry {
             let mut numbers = rest.split_whitespace().map(str::parse::<f64>);
             numbers.all(|number| number == Ok(nothing))
         };
-        let is_base_color = |statement: &str| {
-            self.file(statement).is_some() && self.file(statement) == self.file("map_Kd")
-        };
         let bumps = match self.statements.contains_key("norm") {
             true => &BUMPS[..],
             false => &[],
@@ -213,15 +210,15 @@ impl Entry {
                 rest.is_some_and(|rest| !says_nothing(statement, rest))
             })
             .filter(|statement| {
-                !(["map_d", "map_Ka"].contains(statement) && is_base_color(statement))
+                !(["map_d", "map_Ka"].contains(statement) && self.is_base_color(statement))
             })
             .map(|statement| (*statement).to_owned())
             .collect()
     }
 
-    /// Whether opacity and base colour are one picture.
-    fn has_opacity_in_its_picture(&self) -> bool {
-        self.file("map_d").is_some() && self.file("map_d") == self.file("map_Kd")
+    /// Whether a map is the picture of the base colour once more.
+    fn is_base_color(&self, statement: &str) -> bool {
+        self.file(statement).is_some() && self.file(statement) == self.file("map_Kd")
     }
 
     fn bumps(&self) -> Option<(&'static str, Map)> {

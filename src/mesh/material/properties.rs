@@ -41,7 +41,7 @@ const ALPHA_MODE: Check = (
 pub(super) fn check(properties: &Value) -> Result<(), MaterialError> {
     let wrong = |pointer: &str, found: &Value, expected| MaterialError::Property {
         place: path(pointer),
-        found: found.clone(),
+        found: found.to_string(),
         expected,
     };
     let check = |pointer: &str, (is_right, expected): Check| match properties.pointer(pointer) {
