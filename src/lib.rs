@@ -35,9 +35,9 @@ pub use io::{
 };
 pub use light_cone::{PhotosurfaceMap, View};
 pub use mesh::{
-    AlphaMode, Appearance, Cells, Color, Cone, Count, Cuboid, Cylinder, Filter, Grid, Image,
-    Lattice, Length, Material, Mesh, MeshError, Model, Part, Rod, Sampler, Shape, ShapeError,
-    Sphere, Texture, Torus, Wrap,
+    AlphaMode, Appearance, Cells, Color, Cone, Count, Cuboid, Cylinder, Grid, Image, Lattice,
+    Length, Material, MaterialError, Mesh, MeshError, Model, Part, Rod, Shape, ShapeError, Sphere,
+    Texture, Torus, Wrap,
 };
 pub use photosurface::{
     Facts, Photosurface, Prediction, SceneFacts, Stage, VertexData, Wanted, step_label,

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use photosurface::{
-    AlphaMode, DVec3, Filter, Model, Part, ReadError, Vec2, Vec4, Wrap, read_gltf_bytes, read_model,
+    AlphaMode, DVec3, Model, Part, ReadError, Vec2, Vec4, Wrap, read_gltf_bytes, read_model,
 };
+use serde_json::json;
 
 /// The rectangle that most fixtures show, as its two triangles.
 const RECTANGLE: [[f64; 3]; 6] = [
@@ -309,27 +310,33 @@ fn materials_and_images_are_carried_and_shared() {
     let [red, lost, again] =
         [0, 1, 2].map(|i| model.parts[i].material.clone().expect("a material"));
     assert!(Arc::ptr_eq(&red, &again));
-    assert_eq!(red.name.as_deref(), Some("red"));
-    assert_eq!(red.base_color, [0.5, 0.25, 1.0, 0.5]);
-    assert_eq!((red.metallic, red.roughness), (0.125, 0.75));
-    assert_eq!((red.alpha_mode, red.double_sided), (AlphaMode::Blend, true));
-    let texture = red.base_color_texture.as_ref().expect("a texture");
-    assert_eq!(texture.sampler.mag_filter, Some(Filter::Nearest));
-    assert_eq!(texture.sampler.wrap_s, Wrap::ClampToEdge);
-    assert_eq!(texture.sampler.wrap_t, Wrap::Repeat);
-    assert_eq!(texture.image.mime_type, "image/png");
-    let file = std::fs::read(fixture("textures/red.png")).expect("a fixture");
-    assert_eq!(texture.image.bytes, file);
-    assert_eq!(lost.base_color_texture, None);
+    assert_eq!(red.name(), Some("red"));
+    assert_eq!(red.base_color(), [0.5, 0.25, 1.0, 0.5]);
     assert_eq!(
-        notes[0],
-        "material \"red\": emissiveFactor not carried over"
+        (red.alpha_mode(), red.double_sided()),
+        (AlphaMode::Blend, true)
     );
+    let surface = &red.properties()["pbrMetallicRoughness"];
+    assert_eq!(
+        (&surface["metallicFactor"], &surface["roughnessFactor"]),
+        (&json!(0.125), &json!(0.75))
+    );
+    assert_eq!(red.properties()["emissiveFactor"], json!([1, 1, 1]));
+    let (texture, tex_coord) = red.base_color_texture().expect("a texture");
+    assert_eq!(tex_coord, 0);
+    let sampler = json!({ "magFilter": 9728, "wrapS": 33071 });
+    assert_eq!(texture.sampler(), Some(&sampler));
+    assert_eq!(texture.wrap(), [Wrap::ClampToEdge, Wrap::Repeat]);
+    let image = texture.image().expect("one for every program");
+    assert_eq!(image.mime_type(), "image/png");
+    let file = std::fs::read(fixture("textures/red.png")).expect("a fixture");
+    assert_eq!(image.bytes(), file);
+    assert_eq!(lost.base_color_texture(), None);
     assert!(
-        notes[1].starts_with("image \"missing.png\" dropped: cannot read "),
+        notes[0].starts_with("image \"missing.png\" dropped: cannot read "),
         "{notes:?}"
     );
-    assert_eq!(notes.len(), 2);
+    assert_eq!(notes.len(), 1);
 }
 
 #[test]
@@ -442,20 +449,29 @@ fn obj_groups_and_materials_become_parts() {
     let [red, glass, upper] =
         [0, 1, 2].map(|i| model.parts[i].material.clone().expect("a material"));
     assert!(Arc::ptr_eq(&glass, &upper));
-    assert_eq!(red.base_color, [0.5, 0.25, 1.0, 1.0]);
+    assert_eq!(red.base_color(), [0.5, 0.25, 1.0, 1.0]);
+    let surface = &red.properties()["pbrMetallicRoughness"];
     assert_eq!(
-        (red.metallic, red.roughness, red.double_sided),
-        (0.0, 0.5, true)
+        (&surface["metallicFactor"], &surface["roughnessFactor"]),
+        (&json!(0.0), &json!(0.5))
     );
-    assert_eq!(red.alpha_mode, AlphaMode::Opaque);
-    let texture = red.base_color_texture.as_ref().expect("textures\\red.png");
-    assert_eq!(texture.image.mime_type, "image/png");
-    assert_eq!(glass.base_color, [1.0, 1.0, 1.0, 0.5]);
-    assert_eq!((glass.roughness, glass.alpha_mode), (0.9, AlphaMode::Blend));
-    assert_eq!(notes[0], "material \"red\": map_Bump not carried over");
+    assert_eq!(
+        (red.alpha_mode(), red.double_sided()),
+        (AlphaMode::Opaque, true)
+    );
+    assert_eq!(glass.base_color(), [1.0, 1.0, 1.0, 0.5]);
+    assert_eq!(glass.alpha_mode(), AlphaMode::Blend);
+    assert!(
+        notes[0].starts_with("image \"bump.png\" dropped: cannot read "),
+        "{notes:?}"
+    );
     assert!(
         notes[1].starts_with("image \"missing.png\" dropped: cannot read "),
         "{notes:?}"
+    );
+    assert_eq!(
+        notes[2],
+        "part \"lower_red\": no texture coordinates for the baseColorTexture of material \"red\", dropped"
     );
 
     let (model, notes) = read("missing_mtl.obj");

@@ -195,12 +195,11 @@ fn export(
         }
         clock.stop("photosurface");
     }
-    let steps = if morphing {
-        0
-    } else {
-        stage.scene().steps().len()
+    let steps = match morphing {
+        true => 0..0,
+        false => 0..stage.scene().steps().len(),
     };
-    for step in 0..steps {
+    for step in steps {
         for photosurface in stage.photosurfaces(step, wanted) {
             add(photosurface, &mut batch);
         }

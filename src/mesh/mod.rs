@@ -4,7 +4,8 @@ mod material;
 mod part;
 mod shape;
 
-pub use material::{AlphaMode, Filter, Image, Material, Sampler, Texture, Wrap};
+pub use material::{AlphaMode, Image, Material, MaterialError, Texture, Wrap};
+pub(crate) use material::{clamp_factors, extension_names, map_sources, position, retain_textures};
 pub use part::{Model, Part};
 pub use shape::{
     Appearance, Cells, Color, Cone, Count, Cuboid, Cylinder, Grid, Lattice, Length, Rod, Shape,

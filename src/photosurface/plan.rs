@@ -255,22 +255,22 @@ impl<'a> Plan<'a> {
                 *part = part.clone().with_mesh(refined.mesh);
             }
         }
-        let seen = Self::travelling(&mut plans, &parts);
-        let surface =
-            |(index, ((name, part), (_, before))): (usize, (&(String, Part), &(String, Part)))| {
-                let at_step = |(plan, (seen, limits)): (&Self, &(Vec<Mesh>, Limits))| {
-                    let (mesh, seen) = (part.mesh(), &seen[index]);
-                    let gap = plan.largest_gap(mesh);
-                    Surface {
-                        name: name.clone(),
-                        part: part.clone(),
-                        certificate: plan.certificate(limits, before.mesh(), mesh, seen, gap),
-                        seen: seen.clone(),
-                    }
-                };
-                plans.iter().zip(&seen).map(at_step).collect()
-            };
-        parts.iter().zip(&before).enumerate().map(surface).collect()
+        let mut seen = Self::travelling(&mut plans, &parts);
+        let mut surfaces = vec![];
+        for (index, ((name, part), (_, before))) in parts.iter().zip(&before).enumerate() {
+            let steps = plans.iter().zip(&mut seen).map(|(plan, (seen, limits))| {
+                let (mesh, seen) = (part.mesh(), std::mem::take(&mut seen[index]));
+                let gap = plan.largest_gap(mesh);
+                Surface {
+                    name: name.clone(),
+                    part: part.clone(),
+                    certificate: plan.certificate(limits, before.mesh(), mesh, &seen, gap),
+                    seen,
+                }
+            });
+            surfaces.push(steps.collect());
+        }
+        surfaces
     }
 
     /// Parts as they are seen at each step, with what is allowed there when all steps share one offset in a file.

@@ -6,6 +6,8 @@
 //! extensions without regard to what they mean; it refuses accessors without a buffer view, animations
 //! by extensions, and scenes without nodes.
 
+use std::collections::BTreeSet;
+
 use gltf::json::validation::{Checked, Error as Invalid, Validate};
 use gltf::json::{Root, Value, mesh::Semantic};
 use serde::Deserialize;
@@ -14,16 +16,29 @@ use super::extensions;
 use super::note::Note;
 use super::uri::{Folder, read_uri};
 use super::{DocumentProblem, ReadError};
+use crate::mesh::extension_names;
 
 /// A glTF file whose references are all in range.
 pub(super) struct Document {
     pub(super) root: Root,
     /// As many as there are nodes.
     pub(super) placements: Vec<Placement>,
+    /// What surfaces look like.
+    pub(super) looks: Looks,
     /// How many animations were left out.
     pub(super) animations: usize,
     /// `None` where a buffer has neither a URI nor the binary chunk.
     pub(super) buffers: Vec<Option<Vec<u8>>>,
+}
+
+/// What surfaces look like, in the words of the file.
+pub(super) struct Looks {
+    pub(super) materials: Vec<Value>,
+    pub(super) textures: Vec<Value>,
+    pub(super) samplers: Vec<Value>,
+    pub(super) images: Vec<Value>,
+    /// Extensions that the file cannot do without.
+    pub(super) required: Vec<String>,
 }
 
 /// The transform of a node relative to its parent, with all digits that the file has.
@@ -53,8 +68,8 @@ pub(super) fn read_document(
         None => vec![],
     };
     let mut root: Root = schema("", &value)?;
-    extensions::check(&root, notes)?;
-    root.extensions_required.clear();
+    let looks = Looks::new(&value, std::mem::take(&mut root.extensions_required));
+    extensions::check(&root, &looks, notes)?;
     give_bounds(&mut root)?;
     check_references(&root)?;
 
@@ -73,9 +88,54 @@ pub(super) fn read_document(
     Ok(Document {
         root,
         placements,
+        looks,
         animations,
         buffers,
     })
+}
+
+impl Looks {
+    fn new(root: &Value, required: Vec<String>) -> Self {
+        let list = |key: &str| {
+            let mut list = root.get(key).cloned().unwrap_or_default();
+            drop_nulls(&mut list);
+            let items = list.as_array_mut().map(std::mem::take);
+            items.unwrap_or_default()
+        };
+        Self {
+            materials: list("materials"),
+            textures: list("textures"),
+            samplers: list("samplers"),
+            images: list("images"),
+            required,
+        }
+    }
+
+    /// The names of all extensions that say what surfaces look like.
+    pub(super) fn extensions(&self) -> BTreeSet<String> {
+        let lists = [
+            &self.materials,
+            &self.textures,
+            &self.samplers,
+            &self.images,
+        ];
+        let all = lists.into_iter().flatten();
+        all.flat_map(extension_names).collect()
+    }
+}
+
+/// Takes out the properties that are null, which some programs write for those that are not there.
+fn drop_nulls(value: &mut Value) {
+    match value {
+        Value::Object(object) => object.retain(|name, value| {
+            if name != "extras" && name != "extensions" {
+                drop_nulls(value);
+            }
+            !value.is_null()
+        }),
+        Value::Array(items) => items.iter_mut().for_each(drop_nulls),
+        _ => {}
+    }
 }
 
 /// The JSON and, in a GLB file that has one, the binary chunk.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::mesh::MeshError;
+use crate::mesh::{MaterialError, MeshError};
 
 /// Why a file does not give a model.
 ///
@@ -104,6 +104,14 @@ pub enum ReadError {
         place: String,
         /// What is wrong with it.
         problem: MeshError,
+    },
+    /// Properties that make no material.
+    #[error("{place}: {problem}")]
+    Material {
+        /// Which material.
+        place: String,
+        /// What is wrong with it.
+        problem: MaterialError,
     },
     /// A line of an OBJ file.
     #[error("line {line}: {problem}")]

@@ -7,6 +7,7 @@ use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::Checked;
 
 use super::ReadError;
+use super::document::Looks;
 use super::note::{Note, add_note};
 
 /// Vertex data in integers, which is read.
@@ -20,8 +21,11 @@ const DRACO: &str = "KHR_draco_mesh_compression";
 /// Compressed buffer views, by both of its names.
 const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
+/// Lights, which are counted and left behind.
+pub(super) const LIGHTS: &str = "KHR_lights_punctual";
+
 /// Those that change how a surface looks or what a file tells, but not where its points are.
-const LOOKS: [&str; 14] = [
+const HARMLESS: [&str; 14] = [
     "ADOBE_materials_clearcoat_specular",
     "EXT_lights_ies",
     "EXT_lights_image_based",
@@ -38,17 +42,23 @@ const LOOKS: [&str; 14] = [
     "MSFT_texture_dds",
 ];
 
-/// Refuses a file that cannot be read without an extension that is not known here.
-pub(super) fn check(root: &Root, notes: &mut Vec<Note>) -> Result<(), ReadError> {
-    for name in &root.extensions_required {
-        if [QUANTIZATION, INSTANCING, VISIBILITY].contains(&name.as_str()) {
-            continue;
-        }
-        if !LOOKS.contains(&name.as_str()) && !name.starts_with("KHR_materials_") {
+/// Refuses a file that cannot be read without an extension that is not known here; notes those that are
+/// not carried over with the looks of surfaces.
+pub(super) fn check(root: &Root, looks: &Looks, notes: &mut Vec<Note>) -> Result<(), ReadError> {
+    let heeded = [QUANTIZATION, INSTANCING, VISIBILITY];
+    for name in &looks.required {
+        let known = heeded.contains(&name.as_str()) || HARMLESS.contains(&name.as_str());
+        if !known && !name.starts_with("KHR_materials_") {
             return Err(ReadError::Extension { name: name.clone() });
         }
-        let name = name.clone();
-        add_note(notes, Note::Extension { name });
+    }
+    let carried = looks.extensions();
+    for name in root.extensions_used.iter().chain(&looks.required) {
+        let dealt_with = heeded.iter().chain(&MESHOPT).chain([&DRACO, &LIGHTS]);
+        if !carried.contains(name) && !dealt_with.into_iter().any(|known| known == name) {
+            let name = name.clone();
+            add_note(notes, Note::Extension { name });
+        }
     }
     let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
     for primitive in primitives {

@@ -16,7 +16,7 @@ use super::nodes::{self, Tree, node_name, read_tree};
 use super::note::{Note, add_note, plural};
 use super::primitive::{Source, read_primitive};
 use super::uri::Folder;
-use super::{Findings, NodeProblem, ReadError, checked};
+use super::{Findings, NodeProblem, ReadError, checked, extensions};
 use crate::mesh::{Material, Mesh, Model, Part};
 
 /// A mesh in the coordinates of the scene.
@@ -45,7 +45,7 @@ pub fn read_gltf_bytes(bytes: &[u8], folder: &Path) -> Result<(Model, Findings),
     let mut parts = vec![];
     for &node in &tree.drawn {
         let pieces = read_node(&document, &tree, node, &mut materials, &mut notes)?;
-        let material = |piece: &Piece| piece.material.as_ref()?.name.clone();
+        let material = |piece: &Piece| piece.material.as_ref()?.name().map(str::to_owned);
         let made_of: Vec<Option<String>> = pieces.iter().map(material).collect();
         let names = tell_apart(&node_name(&document.root, node), &made_of);
         for (piece, name) in pieces.into_iter().zip(names) {
@@ -73,7 +73,7 @@ fn note_other_content(document: &Document, notes: &mut Vec<Note>) {
     let lights = root
         .extensions
         .as_ref()
-        .and_then(|extensions| extensions.others.get("KHR_lights_punctual"))
+        .and_then(|extensions| extensions.others.get(extensions::LIGHTS))
         .and_then(|lights| lights.get("lights")?.as_array())
         .map_or(0, Vec::len);
     let counts = [
@@ -84,6 +84,27 @@ fn note_other_content(document: &Document, notes: &mut Vec<Note>) {
     for (count, singular) in counts {
         if count > 0 {
             let what = plural(count, singular);
+            add_note(notes, Note::NotCarried { what });
+        }
+    }
+    // What this program writes there, it makes anew.
+    let generator = root.asset.generator.as_deref().unwrap_or_default();
+    if generator.starts_with(concat!(env!("CARGO_PKG_NAME"), " ")) {
+        return;
+    }
+    let with_extras = [
+        (
+            root.nodes.iter().filter(|n| n.extras.is_some()).count(),
+            "node",
+        ),
+        (
+            root.meshes.iter().filter(|m| m.extras.is_some()).count(),
+            "mesh",
+        ),
+    ];
+    for (count, singular) in with_extras {
+        if count > 0 {
+            let what = format!("extras of {}", plural(count, singular));
             add_note(notes, Note::NotCarried { what });
         }
     }
@@ -156,7 +177,10 @@ fn read_node(
             continue;
         };
         let material = primitive.material.map(|index| index.value());
-        let material = material.map(|index| materials.material(index, notes));
+        let sets = mesh.texture_coordinates().len();
+        let material = material
+            .map(|index| materials.material(index, &source.mesh, sets, notes))
+            .transpose()?;
         for transform in &transforms {
             let mesh = mesh.clone().transformed(transform);
             if !mesh.positions().iter().all(|position| position.is_finite()) {

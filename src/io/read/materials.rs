@@ -1,25 +1,29 @@
 //! Materials and images of a glTF file.
 //!
-//! Images are kept byte for byte and never decoded: they only travel. One that cannot be had costs the
-//! texture, not the file.
+//! Everything that a material says travels, in the words of the file; images are kept byte for byte and
+//! never decoded. One that cannot be had costs the texture, not the file.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use gltf::json;
-use gltf::json::texture::{MagFilter, MinFilter, WrappingMode};
+use serde_json::Value;
 
+use super::ReadError;
 use super::document::Document;
 use super::note::{Note, add_note};
 use super::uri::{Folder, read_uri};
-use crate::mesh::{AlphaMode, Filter, Image, Material, Sampler, Texture, Wrap};
+use crate::mesh::{
+    Image, Material, Texture, clamp_factors, map_sources, position, retain_textures,
+};
 
-/// Materials and images of a file, each made once and shared.
+/// Materials, textures and images of a file, each made once and shared.
 pub(super) struct Materials<'a> {
     document: &'a Document,
     folder: &'a Folder<'a>,
     materials: HashMap<usize, Arc<Material>>,
+    fitted: Fitted,
     /// `None` for those that cannot be had.
+    textures: HashMap<usize, Option<Arc<Texture>>>,
     images: HashMap<usize, Option<Arc<Image>>>,
 }
 
@@ -30,131 +34,211 @@ impl<'a> Materials<'a> {
             document,
             folder,
             materials: HashMap::new(),
+            fitted: Fitted::default(),
+            textures: HashMap::new(),
             images: HashMap::new(),
         }
     }
 
-    /// The material with an index.
-    pub(super) fn material(&mut self, index: usize, notes: &mut Vec<Note>) -> Arc<Material> {
-        if let Some(material) = self.materials.get(&index) {
-            return material.clone();
-        }
-        let material = Arc::new(self.read_material(index, notes));
-        self.materials.insert(index, material.clone());
-        material
-    }
-
-    fn read_material(&mut self, index: usize, notes: &mut Vec<Note>) -> Material {
-        let source = &self.document.root.materials[index];
-        let surface = &source.pbr_metallic_roughness;
-        let properties = properties_left(source);
-        if !properties.is_empty() {
-            let material = source.name.clone();
-            let note = Note::Material {
-                material: material.unwrap_or_else(|| format!("materials[{index}]")),
-                properties,
-            };
-            add_note(notes, note);
-        }
-        let base_color_texture = surface.base_color_texture.as_ref();
-        let gloss_texture = surface.metallic_roughness_texture.as_ref();
-        let metallic_roughness_texture = gloss_texture.and_then(|info| self.texture(info, notes));
-        // The factor is 1 where a texture says where the metal is; without it all would be metal, which is
-        // black wherever it has nothing to reflect.
-        let metallic = match gloss_texture.is_some() && metallic_roughness_texture.is_none() {
-            true => 0.0,
-            false => surface.metallic_factor.0.clamp(0.0, 1.0),
+    /// The material with an index, for a mesh with so many sets of texture coordinates.
+    pub(super) fn material(
+        &mut self,
+        index: usize,
+        mesh: &str,
+        sets: usize,
+        notes: &mut Vec<Note>,
+    ) -> Result<Arc<Material>, ReadError> {
+        let material = match self.materials.get(&index) {
+            Some(material) => material.clone(),
+            None => {
+                let material = Arc::new(self.read_material(index, notes)?);
+                self.materials.insert(index, material.clone());
+                material
+            }
         };
-        Material {
-            name: source.name.clone(),
-            base_color: surface.base_color_factor.0.map(|c| c.clamp(0.0, 1.0)),
-            base_color_texture: base_color_texture.and_then(|info| self.texture(info, notes)),
-            metallic,
-            roughness: surface.roughness_factor.0.clamp(0.0, 1.0),
-            metallic_roughness_texture,
-            alpha_mode: match source.alpha_mode.unwrap() {
-                json::material::AlphaMode::Opaque => AlphaMode::Opaque,
-                json::material::AlphaMode::Mask => {
-                    let cutoff = source.alpha_cutoff.unwrap_or_default().0;
-                    AlphaMode::Mask(cutoff.clamp(0.0, f32::MAX))
-                }
-                json::material::AlphaMode::Blend => AlphaMode::Blend,
-            },
-            double_sided: source.double_sided,
-        }
+        Ok(self.fitted.fit(&material, mesh, sets, notes))
     }
 
-    fn texture(&mut self, info: &json::texture::Info, notes: &mut Vec<Note>) -> Option<Texture> {
-        let document = self.document;
-        let texture = &document.root.textures[info.index.value()];
-        let source = texture.source.value();
-        if source >= document.root.images.len() {
+    fn read_material(
+        &mut self,
+        index: usize,
+        notes: &mut Vec<Note>,
+    ) -> Result<Material, ReadError> {
+        let place = format!("materials[{index}]");
+        let mut properties = self.document.looks.materials[index].clone();
+        for factor in clamp_factors(&mut properties) {
+            let place = place.clone();
+            add_note(notes, Note::FactorClamped { place, factor });
+        }
+        let mut textures = vec![];
+        retain_textures(&mut properties, |slot, info| {
+            let Some(texture) = info["index"].as_u64() else {
+                return false;
+            };
+            let Ok(texture) = self.texture(texture, notes) else {
+                let image = format!("of the {slot} of {place}");
+                let reason = format!("there is no textures[{texture}]");
+                add_note(notes, Note::Image { image, reason });
+                return false;
+            };
+            let slot = texture.map(|texture| position(&mut textures, &texture));
+            slot.map(|slot| info["index"] = slot.into()).is_some()
+        });
+        let material = Material::new(properties, textures);
+        let material = material.map_err(|problem| ReadError::Material { place, problem })?;
+        let required = self.document.looks.required.iter();
+        // A texture without a picture for everybody needs the extension that brings its own.
+        let alone = material.textures().iter().filter(|t| t.image().is_none());
+        let needed: Vec<String> = alone
+            .filter_map(|texture| texture.properties().get("extensions")?.as_object())
+            .flat_map(|extensions| extensions.keys().cloned())
+            .collect();
+        let names = required.chain(&needed).map(String::as_str);
+        Ok(material.requiring(names))
+    }
+
+    /// A texture, if it can be had; an error if there is none with this index.
+    fn texture(
+        &mut self,
+        index: u64,
+        notes: &mut Vec<Note>,
+    ) -> Result<Option<Arc<Texture>>, NoSuch> {
+        let place = index as usize;
+        if let Some(texture) = self.textures.get(&place) {
+            return Ok(texture.clone());
+        }
+        let looks = &self.document.looks;
+        let mut properties = looks.textures.get(place).ok_or(NoSuch)?.clone();
+        let sampler = properties
+            .as_object_mut()
+            .and_then(|texture| texture.shift_remove("sampler"))
+            .and_then(|sampler| looks.samplers.get(sampler.as_u64()? as usize));
+        let mut images = vec![];
+        let mut has_source = false;
+        map_sources(&mut properties, |extension, source| {
+            has_source = true;
+            let image = self.image(source as usize, extension.is_none(), notes)?;
+            Some(position(&mut images, &image))
+        });
+        if !has_source {
             let note = Note::Image {
-                image: format!("of textures[{}]", info.index),
-                reason: "it has none in PNG or JPEG".to_owned(),
+                image: format!("of textures[{index}]"),
+                reason: "it has none".to_owned(),
             };
             add_note(notes, note);
+        }
+        let texture = (!images.is_empty()).then(|| {
+            Arc::new(Texture::from_properties(
+                properties,
+                images,
+                sampler.cloned(),
+            ))
+        });
+        self.textures.insert(place, texture.clone());
+        Ok(texture)
+    }
+
+    /// An image, if it can be had; where no extension says otherwise, every program must be able to read it.
+    fn image(
+        &mut self,
+        index: usize,
+        for_every_program: bool,
+        notes: &mut Vec<Note>,
+    ) -> Option<Arc<Image>> {
+        if !self.images.contains_key(&index) {
+            let image = self.read_image(index).map(Arc::new);
+            let image = image.map_err(|reason| self.drop_image(index, reason, notes));
+            self.images.insert(index, image.ok());
+        }
+        let image = self.images.get(&index)?.clone()?;
+        if for_every_program && !image.is_for_every_program() {
+            self.drop_image(index, "neither PNG nor JPEG".to_owned(), notes);
             return None;
         }
-        let sampler = texture.sampler.map(|s| &document.root.samplers[s.value()]);
-        Some(Texture {
-            image: self.image(source, notes)?,
-            tex_coord: info.tex_coord,
-            sampler: sampler.map(read_sampler).unwrap_or_default(),
-        })
+        Some(image)
     }
 
-    fn image(&mut self, index: usize, notes: &mut Vec<Note>) -> Option<Arc<Image>> {
-        if let Some(image) = self.images.get(&index) {
-            return image.clone();
-        }
-        let source = &self.document.root.images[index];
-        let image = self.image_bytes(index).and_then(|bytes| {
-            let name = source.name.clone();
-            make_image(name, bytes).ok_or_else(|| "neither PNG nor JPEG".to_owned())
-        });
-        let image = image.map(Arc::new).map_err(|reason| {
-            let name = source.name.as_ref().or(source.uri.as_ref());
-            let name = name.filter(|name| !name.starts_with("data:"));
-            let image = name.map_or(format!("images[{index}]"), |name| format!("{name:?}"));
-            add_note(notes, Note::Image { image, reason });
-        });
-        let image = image.ok();
-        self.images.insert(index, image.clone());
-        image
+    fn drop_image(&self, index: usize, reason: String, notes: &mut Vec<Note>) {
+        let source = self.document.looks.images.get(index);
+        let word = |key: &str| source.and_then(|source| source.get(key)?.as_str());
+        let name = word("name").or_else(|| word("uri"));
+        let name = name.filter(|name| !name.starts_with("data:"));
+        let image = name.map_or(format!("images[{index}]"), |name| format!("{name:?}"));
+        add_note(notes, Note::Image { image, reason });
     }
 
-    /// The file of an image, or why it cannot be had.
-    fn image_bytes(&self, index: usize) -> Result<Vec<u8>, String> {
-        let image = &self.document.root.images[index];
-        match (&image.uri, image.buffer_view) {
+    /// An image, or why it cannot be had.
+    fn read_image(&self, index: usize) -> Result<Image, String> {
+        let source = self.document.looks.images.get(index);
+        let mut properties = source.ok_or("there is no such image")?.clone();
+        let object = properties.as_object_mut().ok_or("it is not an object")?;
+        let uri = object.shift_remove("uri");
+        let view = object.shift_remove("bufferView");
+        let uri = uri.as_ref().and_then(Value::as_str);
+        let bytes = match (uri, view.and_then(|view| view.as_u64())) {
             (Some(uri), _) => {
                 let place = format!("images[{index}].uri");
-                read_uri(uri, self.folder, u64::MAX, &place).map_err(|error| reason(&error))
+                read_uri(uri, self.folder, u64::MAX, &place).map_err(|error| reason(&error))?
             }
             (None, Some(view)) => {
-                let bytes = self.document.view(view.value());
-                bytes.map(<[u8]>::to_vec).map_err(|error| reason(&error))
+                let bytes = self.document.view(view as usize);
+                bytes.map_err(|error| reason(&error))?.to_vec()
             }
-            (None, None) => Err("it has neither a uri nor a bufferView".to_owned()),
-        }
+            (None, None) => return Err("it has neither a uri nor a bufferView".to_owned()),
+        };
+        let image = Image::from_properties(properties, bytes);
+        image.ok_or_else(|| "of a type that is not known".to_owned())
     }
 }
 
-/// An image from its file, whose first bytes tell its type; `None` for a type that glTF does not have.
-pub(super) fn make_image(name: Option<String>, bytes: Vec<u8>) -> Option<Image> {
-    let mime_type = if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
-        "image/png"
-    } else if bytes.starts_with(b"\xff\xd8\xff") {
-        "image/jpeg"
-    } else {
-        return None;
-    };
-    Some(Image {
-        name,
-        mime_type: mime_type.to_owned(),
-        bytes,
-    })
+/// There is no texture with an index.
+struct NoSuch;
+
+/// Materials without the textures that meshes have no coordinates for, each made once and shared.
+#[derive(Default)]
+pub(super) struct Fitted {
+    /// By address and sets of texture coordinates; those that had too much, with the material that they were.
+    known: HashMap<(usize, usize), (Arc<Material>, Fit)>,
+}
+
+struct Fit {
+    material: Arc<Material>,
+    dropped: Vec<String>,
+}
+
+impl Fitted {
+    /// What is left of a material on a mesh with so many sets of texture coordinates.
+    pub(super) fn fit(
+        &mut self,
+        material: &Arc<Material>,
+        mesh: &str,
+        sets: usize,
+        notes: &mut Vec<Note>,
+    ) -> Arc<Material> {
+        let key = (Arc::as_ptr(material) as usize, sets);
+        // The material is held, so that nothing else comes to its address.
+        let (_, fit) = self.known.entry(key).or_insert_with(|| {
+            let (rest, dropped) = material.placed_by(sets);
+            let rest = match dropped.is_empty() {
+                true => material.clone(),
+                false => Arc::new(rest),
+            };
+            let fit = Fit {
+                material: rest,
+                dropped,
+            };
+            (material.clone(), fit)
+        });
+        if !fit.dropped.is_empty() {
+            let note = Note::Unplaced {
+                mesh: mesh.to_owned(),
+                material: material.name().unwrap_or_default().to_owned(),
+                slots: fit.dropped.clone(),
+            };
+            add_note(notes, note);
+        }
+        fit.material.clone()
+    }
 }
 
 /// An error and its causes in one line.
@@ -163,62 +247,4 @@ pub(super) fn reason(error: &dyn std::error::Error) -> String {
         Some(source) => format!("{error}: {}", reason(source)),
         None => error.to_string(),
     }
-}
-
-fn read_sampler(sampler: &json::texture::Sampler) -> Sampler {
-    let wrap = |mode| match mode {
-        WrappingMode::ClampToEdge => Wrap::ClampToEdge,
-        WrappingMode::MirroredRepeat => Wrap::MirroredRepeat,
-        WrappingMode::Repeat => Wrap::Repeat,
-    };
-    Sampler {
-        mag_filter: sampler.mag_filter.map(|filter| match filter.unwrap() {
-            MagFilter::Nearest => Filter::Nearest,
-            MagFilter::Linear => Filter::Linear,
-        }),
-        min_filter: sampler.min_filter.map(|filter| match filter.unwrap() {
-            MinFilter::Nearest => Filter::Nearest,
-            MinFilter::Linear => Filter::Linear,
-            MinFilter::NearestMipmapNearest => Filter::NearestMipmapNearest,
-            MinFilter::LinearMipmapNearest => Filter::LinearMipmapNearest,
-            MinFilter::NearestMipmapLinear => Filter::NearestMipmapLinear,
-            MinFilter::LinearMipmapLinear => Filter::LinearMipmapLinear,
-        }),
-        wrap_s: wrap(sampler.wrap_s.unwrap()),
-        wrap_t: wrap(sampler.wrap_t.unwrap()),
-    }
-}
-
-/// The properties of a material that [`Material`] has no room for.
-fn properties_left(source: &json::Material) -> Vec<String> {
-    let surface = &source.pbr_metallic_roughness;
-    let transformed = |info: &Option<json::texture::Info>| {
-        let extensions = info.as_ref().and_then(|info| info.extensions.as_ref());
-        extensions.is_some_and(|extensions| extensions.texture_transform.is_some())
-    };
-    let known = [
-        ("normalTexture", source.normal_texture.is_some()),
-        ("occlusionTexture", source.occlusion_texture.is_some()),
-        ("emissiveTexture", source.emissive_texture.is_some()),
-        ("emissiveFactor", source.emissive_factor.0 != [0.0; 3]),
-        (
-            "KHR_texture_transform of the baseColorTexture",
-            transformed(&surface.base_color_texture),
-        ),
-        (
-            "KHR_texture_transform of the metallicRoughnessTexture",
-            transformed(&surface.metallic_roughness_texture),
-        ),
-    ];
-    let extensions = source.extensions.as_ref();
-    let unlit = extensions.is_some_and(|extensions| extensions.unlit.is_some());
-    let others = extensions
-        .into_iter()
-        .flat_map(|e| e.others.keys().cloned());
-    let known = known.into_iter().chain([("KHR_materials_unlit", unlit)]);
-    let known = known.filter(|(_, there)| *there);
-    known
-        .map(|(name, _)| name.to_owned())
-        .chain(others)
-        .collect()
 }

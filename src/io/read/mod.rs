@@ -12,6 +12,7 @@ mod gltf_model;
 mod instances;
 mod materials;
 mod mtl;
+mod mtl_map;
 mod names;
 mod nodes;
 mod normals;
@@ -67,8 +68,8 @@ fn checked(model: Model) -> Result<Model, ReadError> {
 /// Reads the model in a GLB, glTF or OBJ file, and says what of it was left out and which files were read.
 ///
 /// glTF 2.0: all triangles of the default scene, with the transforms of their nodes, in the default pose of
-/// skins and morph targets. OBJ: all faces. Either with normals, texture coordinates, colours and the base
-/// of materials.
+/// skins and morph targets. OBJ: all faces. Either with normals, texture coordinates, colours and
+/// materials; those of glTF with everything that they say.
 ///
 /// # Errors
 ///

@@ -1,29 +1,52 @@
 //! Material libraries of OBJ files.
 //!
-//! Source: *MTL material format*, Wavefront Advanced Visualizer. Only what [`Material`] has room for is
-//! read; `tobj` panics on colours of fewer than three numbers, so that every line is checked first.
+//! Sources: *MTL material format*, Wavefront Advanced Visualizer; for `Ke`, `Pr`, `Pm`, `norm` and their maps the
+//! extension for physically based rendering that Clara.io published and Blender writes. What these say of
+//! Phong's model beyond colour and exponent (`Ka`, `Ks`, `Ni`, `illum`) has no meaning in glTF's.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
 
-use super::materials::{make_image, reason};
+use serde_json::{Value, json};
+
+use super::ReadError;
+use super::materials::reason;
+use super::mtl_map::{Map, Pictures};
 use super::note::{Note, add_note};
-use super::uri::Folder;
-use crate::mesh::{AlphaMode, Image, Material, Sampler, Texture};
+use crate::mesh::{Material, position};
+
+/// Statements that say something which glTF has no place for.
+const LEFT: [&str; 20] = [
+    "Pc", "Pcr", "Ps", "Tf", "aniso", "anisor", "decal", "disp", "map_Ka", "map_Ks", "map_Ns",
+    "map_ORM", "map_Pm", "map_Pr", "map_Ps", "map_RMA", "map_Tr", "map_d", "map_disp", "refl",
+];
+/// Names of maps of bumps.
+const BUMPS: [&str; 3] = ["map_Bump", "map_bump", "bump"];
+/// Roughness of what says nothing about it: hardly any gloss.
+const MATT: f64 = 0.9;
+
+/// What a library says of one material: the last of each statement.
+struct Entry {
+    name: String,
+    statements: BTreeMap<String, String>,
+}
 
 /// The materials of a library, with their textures; none where it cannot be read.
-pub(super) fn read_library(path: &Path, files: &Folder, notes: &mut Vec<Note>) -> Vec<Material> {
-    let bytes = match files.read(path, u64::MAX) {
+pub(super) fn read_library(
+    path: &Path,
+    pictures: &mut Pictures,
+    notes: &mut Vec<Note>,
+) -> Result<Vec<Material>, ReadError> {
+    let bytes = match pictures.files.read(path, u64::MAX) {
         Ok(bytes) => bytes,
         Err(error) => {
             let path = path.to_owned();
             let reason = reason(&error);
             add_note(notes, Note::MaterialLibrary { path, reason });
-            return vec![];
+            return Ok(vec![]);
         }
     };
-    let (text, malformed) = sound_lines(&String::from_utf8_lossy(&bytes));
+    let (entries, malformed) = entries(&String::from_utf8_lossy(&bytes));
     if !malformed.is_empty() {
         let note = Note::MaterialLines {
             path: path.to_owned(),
@@ -31,146 +54,263 @@ pub(super) fn read_library(path: &Path, files: &Folder, notes: &mut Vec<Note>) -
         };
         add_note(notes, note);
     }
-    let Ok((materials, _)) = tobj::load_mtl_buf(&mut text.as_bytes()) else {
-        let note = Note::MaterialLibrary {
-            path: path.to_owned(),
-            reason: "not as MTL has it".to_owned(),
-        };
-        add_note(notes, note);
-        return vec![];
-    };
     let folder = path.parent().unwrap_or(Path::new(""));
-    let make = |material: &tobj::Material| make_material(material, folder, files, notes);
-    materials.iter().map(make).collect()
+    let make = |entry: &Entry| entry.material(folder, pictures, notes);
+    entries.iter().map(make).collect()
 }
 
-/// The lines that make sense, and the numbers of those that do not.
-fn sound_lines(text: &str) -> (String, Vec<usize>) {
-    let mut sound = String::new();
+/// The materials of a library, and the numbers of the lines that make no sense.
+fn entries(text: &str) -> (Vec<Entry>, Vec<usize>) {
+    let mut entries: Vec<Entry> = vec![];
     let mut malformed = vec![];
     for (index, line) in text.lines().enumerate() {
         let line = line.trim();
         let (statement, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-        let mut words = rest.split_whitespace();
-        let mut number = || {
-            words
-                .next()
-                .is_some_and(|word| word.parse::<f64>().is_ok_and(f64::is_finite))
-        };
+        let rest = rest.trim();
         let makes_sense = match statement {
-            "Kd" => number() && number() && number(),
-            "Ns" | "d" | "Tr" => number(),
-            "newmtl" | "map_Kd" => !rest.trim().is_empty(),
-            // Only named in a note.
-            "Ke" | "map_Ks" | "map_Ke" | "map_Bump" | "map_bump" | "bump" | "map_d" | "norm"
-            | "disp" => {
-                sound += &format!("left_{statement} 1\n");
-                continue;
-            }
-            _ => continue,
+            "" => true,
+            _ if statement.starts_with('#') => true,
+            "Kd" | "Ke" => color(rest).is_some(),
+            "Ns" | "d" | "Tr" | "Pr" | "Pm" => number(rest).is_some(),
+            _ if statement.starts_with("map_") => !rest.is_empty(),
+            "newmtl" | "bump" | "norm" => !rest.is_empty(),
+            _ => true,
         };
-        if makes_sense {
-            sound += &format!("{line}\n");
-        } else {
-            malformed.push(index + 1);
+        match (statement, entries.last_mut()) {
+            _ if !makes_sense => malformed.push(index + 1),
+            ("newmtl", _) => entries.push(Entry {
+                name: rest.to_owned(),
+                statements: BTreeMap::new(),
+            }),
+            (_, Some(entry)) => {
+                let statements = &mut entry.statements;
+                statements.insert(statement.to_owned(), rest.to_owned());
+            }
+            (_, None) => {}
         }
     }
-    (sound, malformed)
+    (entries, malformed)
 }
 
-fn make_material(
-    source: &tobj::Material,
-    folder: &Path,
-    files: &Folder,
-    notes: &mut Vec<Note>,
-) -> Material {
-    let left = source.unknown_param.keys();
-    let left: BTreeSet<&str> = left.filter_map(|name| name.strip_prefix("left_")).collect();
-    if !left.is_empty() {
-        let note = Note::Material {
-            material: source.name.clone(),
-            properties: left.into_iter().map(str::to_owned).collect(),
+impl Entry {
+    fn material(
+        &self,
+        folder: &Path,
+        pictures: &mut Pictures,
+        notes: &mut Vec<Note>,
+    ) -> Result<Material, ReadError> {
+        let mut left = self.left();
+        let mut textures = vec![];
+        let mut slot = |statement: &str, map: &Map, is_bump: bool, notes: &mut Vec<Note>| {
+            let unread = map.unread.iter();
+            left.extend(unread.map(|option| format!("{statement} {option}")));
+            let texture = pictures.texture(map, folder, notes)?;
+            if is_bump && texture.image().is_some_and(|image| is_grey(image.bytes())) {
+                left.push(format!("{statement} (heights)"));
+                return None;
+            }
+            let mut info = json!({ "index": position(&mut textures, &texture) });
+            if let Some(transform) = map.transform() {
+                info["extensions"] = json!({ "KHR_texture_transform": transform });
+            }
+            Some(info)
         };
-        add_note(notes, note);
-    }
-    // Tr, the transparency, is the other way to write d.
-    let transparency = source.unknown_param.get("Tr");
-    let transparency =
-        transparency.and_then(|word| word.split_whitespace().next()?.parse::<f64>().ok());
-    let opacity = source.dissolve.or(transparency.map(|t| 1.0 - t));
-    let opacity = opacity.unwrap_or(1.0).clamp(0.0, 1.0) as f32;
-    let [r, g, b] = source
-        .diffuse
-        .unwrap_or([1.0; 3])
-        .map(|c| c.clamp(0.0, 1.0) as f32);
-    let image = source.diffuse_texture.as_ref();
-    let image = image.and_then(|words| read_texture(words, folder, files, notes));
-    Material {
-        name: Some(source.name.clone()),
-        base_color: [r, g, b, opacity],
-        base_color_texture: image.map(|image| Texture {
-            image: Arc::new(image),
-            tex_coord: 0,
-            sampler: Sampler::default(),
-        }),
-        metallic: 0.0,
-        roughness: source.shininess.map_or(0.9, roughness),
-        metallic_roughness_texture: None,
-        alpha_mode: if opacity < 1.0 {
-            AlphaMode::Blend
-        } else {
-            AlphaMode::Opaque
-        },
+        let base_color = self.map("map_Kd");
+        // Tr, the transparency, is the other way to write d.
+        let opacity = self.number("d").or(self.number("Tr").map(|t| 1.0 - t));
+        let opacity = opacity.unwrap_or(1.0).clamp(0.0, 1.0);
+        let [red, green, blue] = self.color("Kd").unwrap_or([1.0; 3]);
+        let gloss = self.number("Pr").map(|rough| rough.clamp(0.0, 1.0));
+        let gloss = gloss.or(self.number("Ns").map(roughness));
+        let mut surface = json!({
+            "baseColorFactor": [red.clamp(0.0, 1.0), green.clamp(0.0, 1.0), blue.clamp(0.0, 1.0), opacity],
+            "metallicFactor": self.number("Pm").unwrap_or(0.0).clamp(0.0, 1.0),
+            "roughnessFactor": gloss.unwrap_or(MATT),
+        });
+        let base_color = base_color.and_then(|map| slot("map_Kd", &map, false, notes));
+        let has_picture = base_color.is_some();
+        if let Some(info) = base_color {
+            surface["baseColorTexture"] = info;
+        }
         // OBJ says nothing about sides, and viewers of it draw both.
-        double_sided: true,
+        let mut properties = json!({
+            "name": self.name,
+            "pbrMetallicRoughness": surface,
+            "doubleSided": true,
+        });
+        if opacity < 1.0 || (has_picture && self.is_base_color("map_d")) {
+            properties["alphaMode"] = "BLEND".into();
+        }
+        if let Some(map) = self.map("norm") {
+            if let Some(info) = slot("norm", &map, false, notes) {
+                properties["normalTexture"] = info;
+            }
+        } else if let Some((statement, map)) = self.bumps()
+            && let Some(mut info) = slot(statement, &map, true, notes)
+        {
+            if map.strength != 1.0 {
+                info["scale"] = map.strength.into();
+            }
+            properties["normalTexture"] = info;
+            let material = self.name.clone();
+            add_note(notes, Note::BumpAsNormals { material });
+        }
+        let glow = self.map("map_Ke");
+        let glow = glow.and_then(|map| slot("map_Ke", &map, false, notes));
+        self.add_emission(&mut properties, glow);
+
+        if !left.is_empty() {
+            let note = Note::Material {
+                material: self.name.clone(),
+                properties: left,
+            };
+            add_note(notes, note);
+        }
+        Material::new(properties, textures).map_err(|problem| ReadError::Material {
+            place: format!("material {:?}", self.name),
+            problem,
+        })
+    }
+
+    /// Light of its own: above 1 only `KHR_materials_emissive_strength` can say it.
+    fn add_emission(&self, properties: &mut Value, texture: Option<Value>) {
+        let color = self.color("Ke").unwrap_or_default().map(|c| c.max(0.0));
+        let brightest = color.into_iter().fold(0.0, f64::max);
+        let color = match texture {
+            // Black, which programs write where they have nothing to say, would hide the picture.
+            Some(_) if brightest == 0.0 => [1.0; 3],
+            None if brightest == 0.0 => return,
+            _ => color.map(|c| c / brightest.max(1.0)),
+        };
+        properties["emissiveFactor"] = json!(color);
+        if brightest > 1.0 {
+            let strength = json!({ "emissiveStrength": brightest });
+            properties["extensions"] = json!({ "KHR_materials_emissive_strength": strength });
+        }
+        if let Some(info) = texture {
+            properties["emissiveTexture"] = info;
+        }
+    }
+
+    /// Statements that do not come along, without those that say what is so anyway.
+    fn left(&self) -> Vec<String> {
+        let says_nothing = |statement: &str, rest: &str| {
+            let nothing = if statement == "Tf" { 1.0 } else { 0.0 };
+            let mut numbers = rest.split_whitespace().map(str::parse::<f64>);
+            numbers.all(|number| number == Ok(nothing))
+        };
+        let bumps = match self.statements.contains_key("norm") {
+            true => &BUMPS[..],
+            false => &[],
+        };
+        LEFT.iter()
+            .chain(bumps)
+            .filter(|statement| {
+                let rest = self.statements.get(**statement);
+                rest.is_some_and(|rest| !says_nothing(statement, rest))
+            })
+            .filter(|statement| {
+                !(["map_d", "map_Ka"].contains(statement) && self.is_base_color(statement))
+            })
+            .map(|statement| (*statement).to_owned())
+            .collect()
+    }
+
+    /// Whether a map is the picture of the base colour once more.
+    fn is_base_color(&self, statement: &str) -> bool {
+        self.file(statement).is_some() && self.file(statement) == self.file("map_Kd")
+    }
+
+    fn bumps(&self) -> Option<(&'static str, Map)> {
+        BUMPS.iter().find_map(|name| Some((*name, self.map(name)?)))
+    }
+
+    fn file(&self, statement: &str) -> Option<String> {
+        Some(self.map(statement)?.file)
+    }
+
+    fn map(&self, statement: &str) -> Option<Map> {
+        Some(Map::new(self.statements.get(statement)?))
+    }
+
+    fn number(&self, statement: &str) -> Option<f64> {
+        number(self.statements.get(statement)?)
+    }
+
+    fn color(&self, statement: &str) -> Option<[f64; 3]> {
+        color(self.statements.get(statement)?)
+    }
+}
+
+/// The first number, behind the option that `d` can have.
+fn number(rest: &str) -> Option<f64> {
+    let rest = rest.strip_prefix("-halo").unwrap_or(rest);
+    let word = rest.split_whitespace().next()?;
+    word.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+/// Three numbers, or one for all three.
+fn color(rest: &str) -> Option<[f64; 3]> {
+    let words = rest.split_whitespace().take_while(|word| *word != "#");
+    let numbers: Vec<f64> = words.map_while(number).collect();
+    match numbers[..] {
+        [grey] if rest.split_whitespace().nth(1).is_none() => Some([grey; 3]),
+        [red, green, blue, ..] => Some([red, green, blue]),
+        _ => None,
     }
 }
 
 /// The roughness of a surface with the specular exponent `Ns`: `alpha^2 = 2 / (Ns + 2)` for the width
 /// `alpha` of the distribution of normals (Walter et al., *Microfacet Models for Refraction through Rough
 /// Surfaces*, EGSR 2007, section 5.2), and `alpha = roughness^2` in glTF.
-fn roughness(shininess: f64) -> f32 {
-    (2.0 / (shininess.max(0.0) + 2.0)).powf(0.25) as f32
+fn roughness(shininess: f64) -> f64 {
+    (2.0 / (shininess.max(0.0) + 2.0)).powf(0.25)
 }
 
-/// The image that `map_Kd` names; its options, which start with a dash, are passed over.
-fn read_texture(
-    words: &str,
-    folder: &Path,
-    files: &Folder,
-    notes: &mut Vec<Note>,
-) -> Option<Image> {
-    let name = match words.starts_with('-') {
-        true => words.split_whitespace().next_back().unwrap_or_default(),
-        false => words,
-    };
-    // Written on Windows, read everywhere.
-    let relative = name.replace('\\', "/");
-    let stem = Path::new(&relative).file_stem();
-    let stem = stem.map(|stem| stem.to_string_lossy().into_owned());
-    let image = files
-        .read(&folder.join(&relative), u64::MAX)
-        .map_err(|error| reason(&error))
-        .and_then(|bytes| make_image(stem, bytes).ok_or_else(|| "neither PNG nor JPEG".to_owned()));
-    let dropped = |reason| Note::Image {
-        image: format!("{relative:?}"),
-        reason,
-    };
-    image
-        .map_err(|reason| add_note(notes, dropped(reason)))
-        .ok()
+/// Whether a PNG or JPEG file has shades of grey only: heights, where it is for bumps, and never normals.
+/// The headers tell (PNG, third edition, 11.2.1; ITU-T T.81, B.2.2).
+fn is_grey(file: &[u8]) -> bool {
+    if file.starts_with(b"\x89PNG") {
+        return matches!(file.get(25), Some(0 | 4));
+    }
+    let mut rest = file.get(2..).unwrap_or_default();
+    while let [0xff, marker, high, low, segment @ ..] = rest {
+        if (0xc0..=0xcf).contains(marker) && ![0xc4, 0xc8, 0xcc].contains(marker) {
+            return segment.get(5) == Some(&1);
+        }
+        let length = usize::from(u16::from_be_bytes([*high, *low]));
+        rest = rest.get(2 + length.max(2)..).unwrap_or_default();
+    }
+    false
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::uri::Folder;
     use super::*;
+
+    /// The only material of a library, and its notes.
+    fn read(library: &str) -> (Material, Vec<String>) {
+        let files = Folder::new("nowhere".as_ref());
+        let mut notes = vec![];
+        let (entries, _) = entries(library);
+        let mut pictures = Pictures::new(&files);
+        let material = entries[0].material("nowhere".as_ref(), &mut pictures, &mut notes);
+        let notes = notes.iter().map(ToString::to_string).collect();
+        (material.unwrap(), notes)
+    }
 
     #[test]
     fn malformed_lines_are_left_out_and_named() {
-        let (text, malformed) =
-            sound_lines("newmtl a\nKd 1 0.5\n Kd 1 0.5 0\nKa 1\nd x\nNs 10\nnewmtl\n");
-        assert_eq!(text, "newmtl a\nKd 1 0.5 0\nNs 10\n");
-        assert_eq!(malformed, [2, 5, 7]);
+        let text =
+            "newmtl a\nKd 1 0.5\n Kd 1 0.5 0\nKa 1\nd x\nNs 10\nnewmtl\nd -halo 0.5\nKe 2 # two\n";
+        let (entries, malformed) = entries(text);
+        assert_eq!(malformed, [2, 5, 7, 9]);
+        assert_eq!(entries.len(), 1);
+        assert_eq!(entries[0].color("Kd"), Some([1.0, 0.5, 0.0]));
+        assert_eq!(entries[0].number("d"), Some(0.5));
+        assert_eq!(color("0.5"), Some([0.5; 3]));
+        assert_eq!(color("1 2 3 # four"), Some([1.0, 2.0, 3.0]));
     }
 
     #[test]
@@ -178,5 +318,55 @@ mod tests {
         assert_eq!(roughness(0.0), 1.0);
         assert_eq!(roughness(30.0), 0.5);
         assert!(roughness(1000.0) < 0.25);
+    }
+
+    #[test]
+    fn the_extension_for_physically_based_rendering_is_heeded() {
+        let (material, notes) = read("newmtl a\nNs 30\nPr 0.25\nPm 1\nKe 0 4 2\nTr 0.25\n");
+        let expected = json!({
+            "name": "a",
+            "pbrMetallicRoughness": {
+                "baseColorFactor": [1.0, 1.0, 1.0, 0.75],
+                "metallicFactor": 1.0,
+                "roughnessFactor": 0.25,
+            },
+            "doubleSided": true,
+            "alphaMode": "BLEND",
+            "emissiveFactor": [0.0, 1.0, 0.5],
+            "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4.0}},
+        });
+        assert_eq!(material.properties(), &expected);
+        assert_eq!(notes, [""; 0]);
+    }
+
+    #[test]
+    fn what_gltf_has_no_place_for_is_named_unless_it_says_nothing() {
+        let (_, notes) = read(
+            "newmtl a\nKa 1 1 1\nKs 1 1 1\nNi 1.5\nillum 2\nTf 1 1 1\nPs 0.0\nKe 0 0 0\n\
+             Pc 0.5\nmap_d b.png\nmap_Ka a.png\nmap_Kd -s 2 2 a.png\n",
+        );
+        assert_eq!(notes.len(), 2, "{notes:?}");
+        assert!(notes[0].starts_with("image \"a.png\" dropped"));
+        assert_eq!(notes[1], "material \"a\": Pc, map_d not carried over");
+    }
+
+    #[test]
+    fn grey_pictures_are_told_by_their_headers() {
+        let png =
+            |kind: u8| [&b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR"[..], &[0; 8], &[8, kind]].concat();
+        assert!(is_grey(&png(0)) && is_grey(&png(4)));
+        assert!(!is_grey(&png(2)) && !is_grey(&png(6)));
+        let jpeg = |components: u8| {
+            let comment = b"\xff\xd8\xff\xfe\0\x04hi";
+            [
+                &comment[..],
+                b"\xff\xc2\0\x0b\x08\0\x01\0\x01",
+                &[components],
+            ]
+            .concat()
+        };
+        assert!(is_grey(&jpeg(1)));
+        assert!(!is_grey(&jpeg(3)));
+        assert!(!is_grey(&jpeg(1)[..12]) && !is_grey(b""));
     }
 }

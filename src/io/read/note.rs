@@ -102,12 +102,33 @@ pub enum Note {
         /// How many vertices.
         count: usize,
     },
-    /// What a material has beyond base colour, metalness, roughness, their textures, opacity and sidedness.
+    /// What a material of an OBJ file has that glTF has no room for.
     Material {
         /// Its name.
         material: String,
         /// What else it has.
         properties: Vec<String>,
+    },
+    /// A factor of a material beyond what glTF allows.
+    FactorClamped {
+        /// Which material.
+        place: String,
+        /// Which factor.
+        factor: String,
+    },
+    /// Textures that a mesh has no texture coordinates for.
+    Unplaced {
+        /// Which mesh.
+        mesh: String,
+        /// Name of the material; empty where it has none.
+        material: String,
+        /// What the textures are for.
+        slots: Vec<String>,
+    },
+    /// A picture of bumps that is taken for one of normals.
+    BumpAsNormals {
+        /// Name of the material.
+        material: String,
     },
     /// An image that cannot be used.
     Image {
@@ -201,6 +222,26 @@ impl fmt::Display for Note {
             } => {
                 let properties = properties.join(", ");
                 write!(f, "material {material:?}: {properties} not carried over")
+            }
+            Self::FactorClamped { place, factor } => {
+                write!(
+                    f,
+                    "{place}: {factor} brought to the nearest that glTF allows"
+                )
+            }
+            Self::Unplaced {
+                mesh,
+                material,
+                slots,
+            } => {
+                let slots = slots.join(", ");
+                write!(
+                    f,
+                    "{mesh}: no texture coordinates for the {slots} of material {material:?}, dropped"
+                )
+            }
+            Self::BumpAsNormals { material } => {
+                write!(f, "material {material:?}: bump map taken as a normal map")
             }
             Self::Image { image, reason } => write!(f, "image {image} dropped: {reason}"),
             Self::MaterialLibrary { path, reason } => {

@@ -8,7 +8,9 @@ use std::sync::Arc;
 use glam::{DVec3, Vec2, Vec4};
 use tobj::LoadOptions;
 
+use super::materials::Fitted;
 use super::mtl::read_library;
+use super::mtl_map::Pictures;
 use super::names::tell_apart;
 use super::normals::replace_zero_normals;
 use super::note::{Note, add_note, plural};
@@ -29,7 +31,12 @@ pub(super) fn read_obj_bytes(
     let prepared = prepare(&String::from_utf8_lossy(bytes))?;
     let mut notes = vec![];
     note_other_content(&prepared, &mut notes);
-    let libraries = RefCell::new((vec![], notes));
+    let libraries = RefCell::new(Libraries {
+        materials: vec![],
+        pictures: Pictures::new(&folder),
+        notes,
+        problem: None,
+    });
     let options = LoadOptions {
         single_index: true,
         ignore_points: true,
@@ -37,11 +44,16 @@ pub(super) fn read_obj_bytes(
         ..LoadOptions::default()
     };
     let loaded = tobj::load_obj_buf(&mut prepared.text.as_bytes(), &options, |library| {
-        let (materials, notes) = &mut *libraries.borrow_mut();
-        Ok(load_libraries(library, &folder, materials, notes))
+        Ok(libraries.borrow_mut().load(library))
     });
     let (models, _) = loaded.map_err(ReadError::Obj)?;
-    let (materials, mut notes) = libraries.into_inner();
+    let Libraries {
+        materials,
+        mut notes,
+        problem,
+        ..
+    } = libraries.into_inner();
+    problem.map_or(Ok(()), Err)?;
     note_unknown_materials(&prepared, &materials, &mut notes);
 
     let models: Vec<tobj::Model> = models
@@ -50,10 +62,17 @@ pub(super) fn read_obj_bytes(
         .collect();
     let material_of = |model: &tobj::Model| materials.get(model.mesh.material_id?).cloned();
     let names = part_names(&models, default_name, material_of);
+    let mut fitted = Fitted::default();
     let mut parts = vec![];
     for (model, name) in models.iter().zip(names) {
         let mesh = make_mesh(&model.mesh, &prepared, &name, &mut notes);
-        let part = mesh.and_then(|mesh| Part::new(name.clone(), mesh, material_of(model)));
+        let part = mesh.and_then(|mesh| {
+            let sets = mesh.texture_coordinates().len();
+            let place = format!("part {name:?}");
+            let material = material_of(model);
+            let material = material.map(|m| fitted.fit(&m, &place, sets, &mut notes));
+            Part::new(name.clone(), mesh, material)
+        });
         parts.push(part.map_err(|problem| ReadError::Mesh {
             place: format!("part {name:?}"),
             problem,
@@ -90,40 +109,50 @@ fn note_other_content(prepared: &Prepared, notes: &mut Vec<Note>) {
     }
 }
 
-/// Reads the libraries that one `mtllib` names: one whose name may have spaces, or several. Also tells
-/// `tobj` the names of their materials, which is all it needs.
-fn load_libraries(
-    names: &Path,
-    folder: &Folder,
-    materials: &mut Vec<Arc<Material>>,
-    notes: &mut Vec<Note>,
-) -> (Vec<tobj::Material>, HashMap<String, usize>) {
-    let names = names.to_string_lossy().replace('\\', "/");
-    let paths = match folder.path().join(&names).exists() {
-        true => vec![folder.path().join(&names)],
-        false => names
-            .split_whitespace()
-            .map(|name| folder.path().join(name))
-            .collect(),
-    };
-    let new: Vec<Material> = paths
-        .iter()
-        .flat_map(|path| read_library(path, folder, notes))
-        .collect();
-    let named = |material: &Material| tobj::Material {
-        name: material.name.clone().unwrap_or_default(),
-        ..tobj::Material::default()
-    };
-    let stand_ins: Vec<tobj::Material> = new.iter().map(named).collect();
-    let names = stand_ins.iter().map(|material| material.name.clone());
-    let by_name = names.enumerate().map(|(i, name)| (name, i)).collect();
-    materials.extend(new.into_iter().map(Arc::new));
-    (stand_ins, by_name)
+/// The material libraries of a file.
+struct Libraries<'a> {
+    materials: Vec<Arc<Material>>,
+    pictures: Pictures<'a>,
+    notes: Vec<Note>,
+    /// The first that `tobj` has no way to pass on.
+    problem: Option<ReadError>,
+}
+
+impl Libraries<'_> {
+    /// Reads the libraries that one `mtllib` names: one whose name may have spaces, or several. Also tells
+    /// `tobj` the names of their materials, which is all it needs.
+    fn load(&mut self, names: &Path) -> (Vec<tobj::Material>, HashMap<String, usize>) {
+        let folder = self.pictures.files.path();
+        let names = names.to_string_lossy().replace('\\', "/");
+        let paths = match folder.join(&names).exists() {
+            true => vec![folder.join(&names)],
+            false => names
+                .split_whitespace()
+                .map(|name| folder.join(name))
+                .collect(),
+        };
+        let mut new = vec![];
+        for path in paths {
+            match read_library(&path, &mut self.pictures, &mut self.notes) {
+                Ok(materials) => new.extend(materials),
+                Err(problem) => self.problem = self.problem.take().or(Some(problem)),
+            }
+        }
+        let named = |material: &Material| tobj::Material {
+            name: material.name().unwrap_or_default().to_owned(),
+            ..tobj::Material::default()
+        };
+        let stand_ins: Vec<tobj::Material> = new.iter().map(named).collect();
+        let names = stand_ins.iter().map(|material| material.name.clone());
+        let by_name = names.enumerate().map(|(i, name)| (name, i)).collect();
+        self.materials.extend(new.into_iter().map(Arc::new));
+        (stand_ins, by_name)
+    }
 }
 
 fn note_unknown_materials(prepared: &Prepared, materials: &[Arc<Material>], notes: &mut Vec<Note>) {
     for name in &prepared.materials {
-        let is_it = |material: &Arc<Material>| material.name.as_ref() == Some(name);
+        let is_it = |material: &Arc<Material>| material.name() == Some(name);
         if !materials.iter().any(is_it) {
             let name = name.clone();
             add_note(notes, Note::UnknownMaterial { name });
@@ -149,7 +178,7 @@ fn part_names(
     for (name, members) in groups {
         let materials: Vec<Option<String>> = members
             .iter()
-            .map(|&i| material_of(&models[i])?.name.clone())
+            .map(|&i| material_of(&models[i])?.name().map(str::to_owned))
             .collect();
         for (i, name) in members.into_iter().zip(tell_apart(&name, &materials)) {
             names[i] = name;

@@ -17,9 +17,10 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::layer::{Scalar, asked_for, layers};
+use super::materials::Materials;
 use super::pack::{Local, Packed, pack};
 use super::{Export, Playback, WriteError};
-use crate::mesh::{AlphaMode, Filter, Image, Material, Mesh, Sampler, Texture, Wrap};
+use crate::mesh::{Material, Mesh};
 
 /// What may not stand in a relative reference as it is.
 const IN_REFERENCE: &AsciiSet = &CONTROLS
@@ -119,11 +120,7 @@ pub(super) struct Document {
     translations: Vec<DVec3>,
     /// What has been written already, by the address of the shared original.
     shared: HashMap<usize, Index<json::Accessor>>,
-    materials: HashMap<usize, Index<json::Material>>,
-    images: HashMap<usize, Index<json::Image>>,
-    samplers: Vec<Sampler>,
-    textures: Vec<(Index<json::Image>, Index<json::texture::Sampler>)>,
-    default_material: Option<Index<json::Material>>,
+    materials: Materials,
     /// Of the one animation, as long as it is being made.
     pub(super) tracks: (Vec<json::animation::Channel>, Vec<json::animation::Sampler>),
 }
@@ -215,10 +212,7 @@ impl Document {
             let kind = (accessor::ComponentType::U32, accessor::Type::Scalar);
             document.push_accessor(view, 3 * triangles.len(), kind, false, None)
         });
-        let material = match material {
-            Some(material) => self.material(material),
-            None => self.default_material(),
-        };
+        let material = self.materials.add(material);
         let primitive = json::mesh::Primitive {
             attributes: attributes
                 .into_iter()
@@ -227,7 +221,7 @@ impl Document {
             extensions: None,
             extras: None,
             indices: Some(indices),
-            material: Some(material),
+            material: Some(Index::new(material as u32)),
             mode: Checked::Valid(json::mesh::Mode::Triangles),
             targets: Some(targets).filter(|targets| !targets.is_empty()),
         };
@@ -276,6 +270,11 @@ impl Document {
 
     fn finish(mut self, export: &Export<'_>, binary_name: Option<&str>) -> (Value, Vec<u8>) {
         self.root.asset.generator = Some(export.scene.generator.to_owned());
+        let images = self.materials.images().to_vec();
+        let views: Vec<usize> = images
+            .iter()
+            .map(|image| self.view(image.bytes(), None).value())
+            .collect();
         self.root.push(json::Buffer {
             byte_length: USize64::from(self.binary.len()),
             name: None,
@@ -296,6 +295,7 @@ impl Document {
                 root["nodes"][node]["translation"] = json!(offset.to_array());
             }
         }
+        self.materials.write_into(&mut root, &views);
         (root, self.binary)
     }
 
@@ -404,122 +404,6 @@ impl Document {
             extras: None,
         })
     }
-
-    fn material(&mut self, material: &Arc<Material>) -> Index<json::Material> {
-        let address = Arc::as_ptr(material) as usize;
-        if let Some(&index) = self.materials.get(&address) {
-            return index;
-        }
-        let mut texture = |texture: &Option<Texture>| Some(self.texture(texture.as_ref()?));
-        let base_color_texture = texture(&material.base_color_texture);
-        let metallic_roughness_texture = texture(&material.metallic_roughness_texture);
-        let (alpha_mode, alpha_cutoff) = match material.alpha_mode {
-            AlphaMode::Opaque => (json::material::AlphaMode::Opaque, None),
-            AlphaMode::Mask(cutoff) => (
-                json::material::AlphaMode::Mask,
-                Some(json::material::AlphaCutoff(cutoff)),
-            ),
-            AlphaMode::Blend => (json::material::AlphaMode::Blend, None),
-        };
-        let index = self.root.push(json::Material {
-            name: material.name.clone(),
-            alpha_mode: Checked::Valid(alpha_mode),
-            alpha_cutoff,
-            double_sided: material.double_sided,
-            pbr_metallic_roughness: json::material::PbrMetallicRoughness {
-                base_color_factor: json::material::PbrBaseColorFactor(material.base_color),
-                base_color_texture,
-                metallic_roughness_texture,
-                metallic_factor: json::material::StrengthFactor(material.metallic),
-                roughness_factor: json::material::StrengthFactor(material.roughness),
-                ..Default::default()
-            },
-            ..Default::default()
-        });
-        self.materials.insert(address, index);
-        index
-    }
-
-    /// For sources without a material: seen from both sides, for some programs would hide the back.
-    fn default_material(&mut self) -> Index<json::Material> {
-        if let Some(index) = self.default_material {
-            return index;
-        }
-        let material = Arc::new(Material {
-            metallic: 0.0,
-            double_sided: true,
-            ..Material::default()
-        });
-        let index = self.material(&material);
-        // Its address may be that of another material once it is gone.
-        self.materials.remove(&(Arc::as_ptr(&material) as usize));
-        self.default_material = Some(index);
-        index
-    }
-
-    fn texture(&mut self, texture: &Texture) -> json::texture::Info {
-        let image = self.image(&texture.image);
-        let sampler = self.sampler(texture.sampler);
-        let known = self
-            .textures
-            .iter()
-            .position(|&known| known == (image, sampler));
-        let index = known.unwrap_or_else(|| {
-            self.textures.push((image, sampler));
-            self.root.push(json::Texture {
-                name: None,
-                sampler: Some(sampler),
-                source: image,
-                extensions: None,
-                extras: None,
-            });
-            self.textures.len() - 1
-        });
-        json::texture::Info {
-            index: Index::new(index as u32),
-            tex_coord: texture.tex_coord,
-            extensions: None,
-            extras: None,
-        }
-    }
-
-    fn image(&mut self, image: &Arc<Image>) -> Index<json::Image> {
-        let address = Arc::as_ptr(image) as usize;
-        if let Some(&index) = self.images.get(&address) {
-            return index;
-        }
-        let view = self.view(&image.bytes, None);
-        let index = self.root.push(json::Image {
-            buffer_view: Some(view),
-            mime_type: Some(json::image::MimeType(image.mime_type.clone())),
-            name: image.name.clone(),
-            uri: None,
-            extensions: None,
-            extras: None,
-        });
-        self.images.insert(address, index);
-        index
-    }
-
-    fn sampler(&mut self, sampler: Sampler) -> Index<json::texture::Sampler> {
-        if let Some(known) = self.samplers.iter().position(|&known| known == sampler) {
-            return Index::new(known as u32);
-        }
-        self.samplers.push(sampler);
-        self.root.push(json::texture::Sampler {
-            mag_filter: sampler
-                .mag_filter
-                .map(|filter| Checked::Valid(mag_filter(filter))),
-            min_filter: sampler
-                .min_filter
-                .map(|filter| Checked::Valid(min_filter(filter))),
-            name: None,
-            wrap_s: Checked::Valid(wrapping(sampler.wrap_s)),
-            wrap_t: Checked::Valid(wrapping(sampler.wrap_t)),
-            extensions: None,
-            extras: None,
-        })
-    }
 }
 
 pub(super) fn raw(facts: &impl Serialize) -> Box<RawValue> {
@@ -542,34 +426,4 @@ fn unit_or_up(vector: DVec3) -> DVec3 {
 
 fn to_u8(value: f32) -> u8 {
     (value.clamp(0.0, 1.0) * 255.0).round() as u8
-}
-
-fn mag_filter(filter: Filter) -> json::texture::MagFilter {
-    match filter {
-        Filter::Nearest | Filter::NearestMipmapNearest | Filter::NearestMipmapLinear => {
-            json::texture::MagFilter::Nearest
-        }
-        Filter::Linear | Filter::LinearMipmapNearest | Filter::LinearMipmapLinear => {
-            json::texture::MagFilter::Linear
-        }
-    }
-}
-
-fn min_filter(filter: Filter) -> json::texture::MinFilter {
-    match filter {
-        Filter::Nearest => json::texture::MinFilter::Nearest,
-        Filter::Linear => json::texture::MinFilter::Linear,
-        Filter::NearestMipmapNearest => json::texture::MinFilter::NearestMipmapNearest,
-        Filter::LinearMipmapNearest => json::texture::MinFilter::LinearMipmapNearest,
-        Filter::NearestMipmapLinear => json::texture::MinFilter::NearestMipmapLinear,
-        Filter::LinearMipmapLinear => json::texture::MinFilter::LinearMipmapLinear,
-    }
-}
-
-fn wrapping(wrap: Wrap) -> json::texture::WrappingMode {
-    match wrap {
-        Wrap::ClampToEdge => json::texture::WrappingMode::ClampToEdge,
-        Wrap::MirroredRepeat => json::texture::WrappingMode::MirroredRepeat,
-        Wrap::Repeat => json::texture::WrappingMode::Repeat,
-    }
 }

@@ -5,6 +5,7 @@ mod error;
 mod file;
 mod gltf;
 mod layer;
+mod materials;
 mod pack;
 mod ply;
 mod range;

@@ -89,15 +89,9 @@ fn least_gltf(parts: &[&Part], steps: u64) -> u64 {
         if let Some(colors) = mesh.colors() {
             bytes += once(colors.as_ptr() as usize, 4 * colors.len());
         }
-        for texture in part
-            .material
-            .iter()
-            .flat_map(|material| material.textures())
-        {
-            bytes += once(
-                texture.image.bytes.as_ptr() as usize,
-                texture.image.bytes.len(),
-            );
+        let textures = part.material.iter().flat_map(|m| m.textures());
+        for image in textures.flat_map(|texture| texture.images()) {
+            bytes += once(image.bytes().as_ptr() as usize, image.bytes().len());
         }
     }
     bytes

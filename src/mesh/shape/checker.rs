@@ -7,49 +7,46 @@ use std::sync::Arc;
 
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
+use serde_json::json;
 
 use super::{Appearance, Color};
-use crate::mesh::{Filter, Image, Material, Sampler, Texture, Wrap};
+use crate::mesh::{Image, Material, Texture};
 
 /// Width and height of a cell in pixels: enough for a sharp edge after linear filtering.
 const CELL_PX: u32 = 32;
 
+// Numbers of glTF 2.0, section 5.26.
+const LINEAR: u32 = 9729;
+const LINEAR_MIPMAP_LINEAR: u32 = 9987;
+const REPEAT: u32 = 10497;
+
 /// The material of `appearance`, a checker pattern having `cells` columns and rows over the unit square
 /// of texture coordinates.
 pub(super) fn material(appearance: &Appearance, cells: [u32; 2]) -> Material {
-    let plain = Material {
-        base_color: [1.0; 4],
-        metallic: 0.0,
-        roughness: 0.9,
-        double_sided: true,
-        ..Material::default()
+    let [red, green, blue] = match appearance.checker {
+        None => appearance.color.linear(),
+        Some(_) => [1.0; 3],
     };
-    match appearance.checker {
-        None => {
-            let [red, green, blue] = appearance.color.linear();
-            Material {
-                base_color: [red, green, blue, 1.0],
-                ..plain
-            }
-        }
-        Some(checker) => Material {
-            base_color_texture: Some(Texture {
-                image: Arc::new(Image {
-                    name: Some("checker".to_owned()),
-                    mime_type: "image/png".to_owned(),
-                    bytes: png([appearance.color, checker], cells),
-                }),
-                tex_coord: 0,
-                sampler: Sampler {
-                    mag_filter: Some(Filter::Linear),
-                    min_filter: Some(Filter::LinearMipmapLinear),
-                    wrap_s: Wrap::Repeat,
-                    wrap_t: Wrap::Repeat,
-                },
-            }),
-            ..plain
-        },
+    let mut surface = json!({
+        "baseColorFactor": [red, green, blue, 1.0],
+        "metallicFactor": 0.0,
+        "roughnessFactor": 0.9,
+    });
+    let mut textures = vec![];
+    if let Some(checker) = appearance.checker {
+        let picture = png([appearance.color, checker], cells);
+        let image = Image::new(Some("checker"), picture).expect("PNG is known");
+        let sampler = json!({
+            "magFilter": LINEAR,
+            "minFilter": LINEAR_MIPMAP_LINEAR,
+            "wrapS": REPEAT,
+            "wrapT": REPEAT,
+        });
+        surface["baseColorTexture"] = json!({ "index": 0 });
+        textures.push(Arc::new(Texture::new(Arc::new(image), Some(sampler))));
     }
+    let properties = json!({ "pbrMetallicRoughness": surface, "doubleSided": true });
+    Material::new(properties, textures).expect("a colour has numbers from 0 to 1")
 }
 
 /// A PNG file of cells in two colours, the first in the upper left corner.
@@ -69,6 +66,7 @@ fn png(colors: [Color; 2], [columns, rows]: [u32; 2]) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::Wrap;
 
     const APPEARANCE: Appearance = Appearance {
         color: Color([200, 30, 40]),
@@ -78,9 +76,10 @@ mod tests {
     #[test]
     fn a_checker_alternates_both_colours() {
         let material = material(&APPEARANCE, [4, 2]);
-        assert_eq!(material.base_color, [1.0; 4]);
-        let texture = material.base_color_texture.unwrap();
-        let picture = image::load_from_memory(&texture.image.bytes).unwrap();
+        assert_eq!(material.base_color(), [1.0; 4]);
+        let (texture, tex_coord) = material.base_color_texture().unwrap();
+        assert_eq!((texture.wrap(), tex_coord), ([Wrap::Repeat; 2], 0));
+        let picture = image::load_from_memory(texture.image().unwrap().bytes()).unwrap();
         let picture = picture.to_rgb8();
         assert_eq!(picture.dimensions(), (128, 64));
         for (x, y, pixel) in picture.enumerate_pixels() {
@@ -109,9 +108,16 @@ mod tests {
             ..APPEARANCE
         };
         let material = material(&appearance, [4, 2]);
-        assert_eq!(material.base_color_texture, None);
-        assert_eq!(material.base_color[..3], appearance.color.linear());
-        assert_eq!((material.metallic, material.roughness), (0.0, 0.9));
-        assert!(material.double_sided);
+        assert_eq!(material.base_color_texture(), None);
+        assert_eq!(
+            material.base_color()[..3],
+            appearance.color.linear().map(f64::from)
+        );
+        let surface = &material.properties()["pbrMetallicRoughness"];
+        assert_eq!(
+            (&surface["metallicFactor"], &surface["roughnessFactor"]),
+            (&json!(0.0), &json!(0.9))
+        );
+        assert!(material.double_sided());
     }
 }
