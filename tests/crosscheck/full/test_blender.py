@@ -234,12 +234,12 @@ def test_the_observer_sees_a_circle(flyby, tmp_path):
     assert (alpha[outside < -unsure] == 1).all()
 
 
-def test_an_attribute_paints(flyby, photosurface, export, tmp_path):
+def test_an_attribute_paints(photosurface, export, tmp_path):
     """What approaches is bright, what recedes is dark: the Doppler factor in the Attribute node."""
     objects = blender.open_file(export(json.loads(photosurface("example", "sphere")), to="out.ply"))
     blender.paint_by(objects, "quality")
-    ((_, found),) = objects.items()
-    # Seen as glTF's z would be seen: a PLY file has z up in Blender, so from there.
+    (found,) = objects.values()
+    # A PLY file's z is Blender's z, so that this looks at it from above.
     places = blender.values(found.data.vertices, "co", 3)
     low, high = places.min(axis=0), places.max(axis=0)
     middle = blender.to_gltf([(low + high) / 2])[0]
