@@ -1,41 +1,93 @@
 //! The cross-check: programs that nobody here wrote judge the files that the binary writes.
 //!
-//! trimesh and pyvista read them, the Khronos validator validates them, and an oracle in mpmath that
-//! shares no code with the crate says where every vertex has to be; the questions are in
-//! `tests/crosscheck/*.py`. This file only makes the environment they run in, below `target/crosscheck`,
-//! and runs them. Nothing is installed anywhere else, and nothing at all while the pins stay the same.
+//! trimesh, pyvista and three.js read them, the Khronos validator validates them, and an oracle in mpmath
+//! that shares no code with the crate says where every vertex has to be; the questions are in
+//! `tests/crosscheck/*.py`. Blender and MeshLab, which are large and want certain system libraries, are
+//! asked (`tests/crosscheck/full/*.py`) where `PHOTOSURFACE_FULL_CROSSCHECK=1` says so.
+//!
+//! This file only makes the environments they run in, below `target/crosscheck` and
+//! `target/crosscheck-full`, and runs them. Nothing is installed anywhere else, and nothing at all while the
+//! pins stay the same.
 
+use std::env;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-const REQUIREMENTS: &str = include_str!("crosscheck/requirements.txt");
 const PACKAGE: &str = include_str!("crosscheck/package.json");
 const PACKAGE_LOCK: &str = include_str!("crosscheck/package-lock.json");
 
+const ASKED_FOR: &str = "PHOTOSURFACE_FULL_CROSSCHECK";
+
 #[test]
 fn programs_nobody_here_wrote_agree() {
+    let home = home("crosscheck");
+    let python = virtual_environment(
+        &home,
+        &questions().join("requirements.txt"),
+        "sys.version_info >= (3, 11)",
+    );
+    let node_modules = node_modules(&home);
+    ask(
+        &questions(),
+        &home,
+        Command::new(python).env("NODE_PATH", node_modules),
+    );
+}
+
+#[test]
+fn blender_and_meshlab_agree() {
+    if env::var_os(ASKED_FOR).is_none_or(|value| value != "1") {
+        println!("Blender and MeshLab are asked with {ASKED_FOR}=1 only");
+        return;
+    }
+    let home = home("crosscheck-full");
+    let questions = questions().join("full");
+    let python = virtual_environment(
+        &home,
+        &questions.join("requirements.txt"),
+        // Blender as a module exists for one version of Python.
+        "sys.version_info[:2] == (3, 11)",
+    );
+    ask(
+        &questions,
+        &home,
+        // No start-up file and no add-on of whoever runs this.
+        Command::new(python).env("BLENDER_USER_RESOURCES", home.join("blender")),
+    );
+}
+
+/// A directory of this name inside cargo's target directory.
+fn home(name: &str) -> PathBuf {
     let home = Path::new(env!("CARGO_TARGET_TMPDIR"))
         .parent()
         .expect("cargo's directory for temporary files is inside its target directory")
-        .join("crosscheck");
+        .join(name);
     fs::create_dir_all(&home).expect("the target directory is writable");
+    home
+}
 
-    let python = virtual_environment(&home);
-    let node_modules = node_modules(&home);
+/// The directory of the Python tests and the pins.
+fn questions() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/crosscheck")
+}
 
+/// Runs the Python tests in `questions` with this interpreter; there have to be some, and all have to pass.
+fn ask(questions: &Path, home: &Path, python: &mut Command) {
     let results = home.join("results.xml");
     let _ = fs::remove_file(&results); // absent on the first run
-    let output = run(Command::new(python)
+    let output = run(python
         .args(["-m", "pytest", "-ra", "--durations=10", "--color=no"])
         .args(["-p", "no:cacheprovider"])
+        // What all questions share is in one conftest.py.
+        .arg("--rootdir")
+        .arg(crate::questions())
         .arg("--junit-xml")
         .arg(&results)
-        .arg(questions())
-        .current_dir(questions())
+        .arg(questions)
+        .current_dir(questions)
         .env("PHOTOSURFACE_BINARY", env!("CARGO_BIN_EXE_photosurface"))
-        .env("NODE_PATH", node_modules)
         .env("PYTHONDONTWRITEBYTECODE", "1"))
     .expect("the interpreter is there: it installed the packages");
     let transcript = transcript(&output);
@@ -49,17 +101,15 @@ fn programs_nobody_here_wrote_agree() {
     assert_eq!(count(&results, "skipped"), 0, "skipped\n{transcript}");
 }
 
-/// The directory of the Python tests and the pins.
-fn questions() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/crosscheck")
-}
-
-/// The Python interpreter of a virtual environment with everything in `requirements.txt`.
-fn virtual_environment(home: &Path) -> PathBuf {
+/// The Python interpreter of a virtual environment with everything that `requirements` pins.
+///
+/// It is made by a Python of which the expression `suitable` is true.
+fn virtual_environment(home: &Path, requirements: &Path, suitable: &str) -> PathBuf {
     let directory = home.join("venv");
     let interpreter = directory.join("bin/python");
-    let (python, version) = find_python();
-    let pins = format!("{version}\n{REQUIREMENTS}");
+    let (python, version) = find_python(suitable);
+    let pins = fs::read_to_string(requirements).expect("the pins are beside the questions");
+    let pins = format!("{version}\n{pins}");
     install_once(&home.join("venv.installed"), &pins, || {
         remove_directory(&directory);
         must_succeed(
@@ -70,26 +120,25 @@ fn virtual_environment(home: &Path) -> PathBuf {
             Command::new(&interpreter)
                 .args(["-m", "pip", "install", "--disable-pip-version-check"])
                 .args(["--only-binary", ":all:", "--requirement"])
-                .arg(questions().join("requirements.txt")),
+                .arg(requirements),
             "It needs the network, for pypi.org, and a Python for which these packages have wheels (3.11).",
         );
     });
     interpreter
 }
 
-/// The first Python that is new enough for the pinned packages, and its version.
-fn find_python() -> (&'static str, String) {
-    const IS_NEW_ENOUGH: &str =
-        "import sys; print(sys.version); sys.exit(sys.version_info < (3, 11))";
+/// The first Python of which the expression `suitable` is true, and its version.
+fn find_python(suitable: &str) -> (&'static str, String) {
+    let question = format!("import sys; print(sys.version); sys.exit(not ({suitable}))");
     for python in ["python3.11", "python3"] {
-        if let Ok(output) = Command::new(python).args(["-c", IS_NEW_ENOUGH]).output()
+        if let Ok(output) = Command::new(python).args(["-c", &question]).output()
             && output.status.success()
         {
             let version = String::from_utf8_lossy(&output.stdout).trim().to_owned();
             return (python, version);
         }
     }
-    panic!("the cross-check needs Python 3.11 or newer as `python3.11` or `python3`");
+    panic!("the cross-check needs Python, as `python3.11` or `python3`, with {suitable}");
 }
 
 /// A `node_modules` directory with everything in `package-lock.json`.

@@ -6,6 +6,9 @@ import subprocess
 
 import pytest
 
+# Blender and MeshLab are asked from an environment of their own.
+collect_ignore = ["full"]
+
 
 def pytest_configure():
     if "PHOTOSURFACE_BINARY" not in os.environ:

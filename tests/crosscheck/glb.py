@@ -24,6 +24,7 @@ class Node:
     translation: numpy.ndarray  # f64, as in the JSON
     attributes: dict  # name to array, as in the binary part
     triangles: numpy.ndarray
+    material: dict | None
 
     @property
     def extras(self):
@@ -61,6 +62,13 @@ class Gltf:
         array = numpy.frombuffer(self._buffer, element, spec["count"], start)
         return array[:, 0] if spec["type"] == "SCALAR" else array
 
+    def picture(self, texture):
+        """The bytes of the file of pixels behind a reference to a texture, as a material has it."""
+        source = self.json["textures"][texture["index"]]["source"]
+        view = self.json["bufferViews"][self.json["images"][source]["bufferView"]]
+        start = view.get("byteOffset", 0)
+        return self._buffer[start : start + view["byteLength"]]
+
     def _node(self, node):
         mesh = self.json["meshes"][node["mesh"]]
         (primitive,) = mesh["primitives"]
@@ -71,6 +79,7 @@ class Gltf:
             translation=numpy.array(node.get("translation", [0, 0, 0]), dtype=numpy.float64),
             attributes={n: self.accessor(i) for n, i in primitive["attributes"].items()},
             triangles=self.accessor(primitive["indices"]).reshape(-1, 3),
+            material=self.json["materials"][primitive["material"]] if "material" in primitive else None,
         )
 
 

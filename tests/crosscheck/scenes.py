@@ -1,7 +1,5 @@
 """The scenes that the cross-check asks about: each is awkward in another way."""
 
-import pyvista.examples
-import trimesh
 from PIL import Image
 
 # The observer moves along an axis, in a few steps, past a curved surface.
@@ -109,5 +107,9 @@ def write_obj(directory):
 
 def write_airplane(directory):
     """pyvista's example mesh as trimesh writes it, in GLB; returns its path."""
+    # Here, because the environment of Blender and MeshLab uses these scenes too but has no pyvista.
+    import pyvista.examples
+    import trimesh
+
     trimesh.load(pyvista.examples.planefile, process=False).export(directory / "airplane.glb")
     return directory / "airplane.glb"

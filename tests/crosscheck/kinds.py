@@ -1,0 +1,45 @@
+"""Every kind of glTF file that the program writes: what three.js and Blender are asked about.
+
+A kind is a function of the fixture `export` and of a directory for sources; it returns the paths of its files.
+"""
+
+from handmade import write_hierarchy
+from scenes import CUBE, SEVERAL, SPHERE, TORUS, write_obj
+
+
+def scene(source, *flags, to="out.glb"):
+    """The one file of this scene."""
+    return lambda export, directory: [export(source, *flags, to=to)]
+
+
+def split(source):
+    """A file for each step of this scene."""
+
+    def files(export, directory):
+        return sorted(export(source, "--split", to="split.glb").parent.glob("*.glb"))
+
+    return files
+
+
+def mesh(write, *, to="out.glb"):
+    """A mesh from a file of another program, flown by twice; `write` makes the file in a directory."""
+
+    def files(export, directory):
+        spec = {"name": "thing", "file": str(write(directory)), "position": [0.5, 0, -5], "scale": 0.5}
+        observer = {"velocity": [0, 0, -0.9]}
+        return [export({"observer": observer, "objects": [spec], "steps": [0, 1]}, to=to)]
+
+    return files
+
+
+KINDS = {
+    "one step": scene(TORUS),
+    "several steps": scene(SPHERE),
+    "a file for each step": split(SPHERE),
+    "a buffer of its own": scene(CUBE, to="out.gltf"),
+    "marker and checker": scene(SEVERAL),
+    "checker beside a buffer of its own": scene(SEVERAL, to="out.gltf"),
+    "hierarchy with a texture": mesh(write_hierarchy),
+    "materials of an OBJ": mesh(write_obj),
+    "materials of an OBJ beside a buffer of its own": mesh(write_obj, to="out.gltf"),
+}
