@@ -249,6 +249,7 @@ impl Stage {
             relative_rapidity: relative.rapidity(),
             vertices: surface.seen.positions().len(),
             triangles: surface.seen.triangles().len(),
+            condition: condition(view, surface.part.mesh()),
             certificate: surface.certificate.clone(),
         }
     }
@@ -310,6 +311,13 @@ fn seen_mesh(view: &View, rest: &Mesh) -> Mesh {
         pairs.map(seen).collect()
     });
     rest.with_geometry(positions, normals, tangents)
+}
+
+/// The largest stretch at a vertex.
+fn condition(view: &View, rest: &Mesh) -> f64 {
+    let jobs = rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
+    jobs.map(|&position| view.stretch_bound(position, 0.0))
+        .reduce(|| 1.0, f64::max)
 }
 
 fn doppler_factors(view: &View, rest: &Mesh) -> Vec<f64> {
