@@ -213,8 +213,7 @@ impl PhotosurfaceMap {
         let offset = offset_rest * scale;
         let (cone, _) = self.light_cone(offset);
         // Angles from straight behind, where the small ones are: no digits are lost there.
-        let from_behind =
-            cone.distance_across.atan2(-n.dot(offset)) * (1.0 + 16.0 * f64::EPSILON);
+        let from_behind = cone.distance_across.atan2(-n.dot(offset)) * (1.0 + 16.0 * f64::EPSILON);
         let sine = radius * scale / offset.length() * (1.0 + 8.0 * f64::EPSILON);
         let half_angle = 0.5 * (from_behind + sine.asin() * (1.0 + 4.0 * f64::EPSILON));
         // Written so that NaN, also from a sine above 1, is refused.
@@ -242,8 +241,8 @@ impl PhotosurfaceMap {
         let (toward_across, doppler_factor) = self.toward_across(offset_rest);
         let normal_par = n.dot(normal_rest);
         let normal_across = normal_rest - n * normal_par;
-        let normal = normal_across * doppler_factor
-            + (n - toward_across * self.gamma_beta) * normal_par;
+        let normal =
+            normal_across * doppler_factor + (n - toward_across * self.gamma_beta) * normal_par;
         unit(normal).unwrap_or(DVec3::ZERO)
     }
 
@@ -254,8 +253,8 @@ impl PhotosurfaceMap {
         let (toward_across, doppler_factor) = self.toward_across(offset_rest);
         let tangent_par = n.dot(tangent_rest);
         let tangent_across = tangent_rest - n * tangent_par;
-        let seen_par = doppler_factor * tangent_par
-            + self.gamma_beta * toward_across.dot(tangent_across);
+        let seen_par =
+            doppler_factor * tangent_par + self.gamma_beta * toward_across.dot(tangent_across);
         unit(tangent_across + n * seen_par).unwrap_or(DVec3::ZERO)
     }
 
