@@ -140,10 +140,7 @@ impl Table {
             "{}: {} cases, worst {:.3} units in the last place ({}); naive: no digit right in {}",
             self.quantity, self.rows, self.worst, self.worst_case, self.naive_useless
         );
-        assert!(
-            self.rows > 0 && self.naive_useless > 0,
-            "nothing hard in it"
-        );
+        assert!(self.naive_worst > 1e6, "nothing hard in it");
     }
 }
 

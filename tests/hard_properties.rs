@@ -125,7 +125,7 @@ fn ten_thousand_files_are_finite_or_one_clear_error() {
                 let case = format!("rapidity {rapidity}, size {size}, {place}, {direction}");
                 let velocity = Velocity::from_rapidity(rapidity, direction).expect("valid");
                 // Refined now and then, and where that takes few triangles.
-                let subdivide = number == 3 && rapidity <= 3.0;
+                let subdivide = number == 3 && rapidity <= 3.0 && distance > 0.4;
                 match export(&stage(&mesh, place, velocity), subdivide) {
                     Ok(bytes) => {
                         assert_finite(&bytes, &case);
@@ -241,7 +241,7 @@ fn the_command_takes_degenerate_files_or_says_why_not() {
         (
             "far.obj",
             "v 1e200 0 0\nv 2e200 1 0\nv 0 1e200 0\nf 1 2 3\n",
-            Some("32-bit"),
+            Some("1e200"),
         ),
     ] {
         workplace.write(name, text);

@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::{DMat3, DVec3};
 
-use crate::spacetime::{Velocity, exact, harmless_scale, length, unit};
+use crate::spacetime::{Velocity, exact, harmless_scale, heading, length, unit};
 
 /// The map from points at rest to the places where one moving observer sees them.
 ///
@@ -235,10 +235,13 @@ impl PhotosurfaceMap {
     /// `D n_across + (n.n_rest) (n - gamma beta d_across / r)`: two terms, neither of which cancels in
     /// itself.
     ///
-    /// A zero normal, or one so small that it vanishes, stays zero.
+    /// A zero normal stays zero.
     pub fn seen_normal(&self, offset_rest: DVec3, normal_rest: DVec3) -> DVec3 {
         let n = self.direction;
         let (toward_across, doppler_factor) = self.toward_across(offset_rest);
+        let Some(normal_rest) = heading(normal_rest) else {
+            return DVec3::ZERO;
+        };
         let normal_par = n.dot(normal_rest);
         let normal_across = normal_rest - n * normal_par;
         let normal =
@@ -251,6 +254,9 @@ impl PhotosurfaceMap {
     pub fn seen_tangent(&self, offset_rest: DVec3, tangent_rest: DVec3) -> DVec3 {
         let n = self.direction;
         let (toward_across, doppler_factor) = self.toward_across(offset_rest);
+        let Some(tangent_rest) = heading(tangent_rest) else {
+            return DVec3::ZERO;
+        };
         let tangent_par = n.dot(tangent_rest);
         let tangent_across = tangent_rest - n * tangent_par;
         let seen_par =

@@ -116,6 +116,10 @@ impl View {
     }
 
     fn turned(&self, vector: DVec3) -> DVec3 {
+        if !vector.is_finite() {
+            // What is beyond f64 has no direction left to turn.
+            return DVec3::INFINITY;
+        }
         self.rest_to_observer.rotation() * vector
     }
 }
