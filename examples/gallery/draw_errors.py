@@ -38,6 +38,7 @@ def main() -> None:
     axes.text(352, 8, "8 units", color="#1f618d", fontsize=8, va="bottom", ha="right")
     axes.axhline(NO_DIGIT, color="#c0392b", linewidth=0.8, linestyle="--")
     axes.set_xscale("symlog", linthresh=1)
+    axes.set_xlim(-0.1, 420)
     axes.set_xticks([0, 1, 3, 10, 20, 50, 100, 350], ["0", "1", "3", "10", "20", "50", "100", "350"])
     axes.set_yscale("log")
     axes.set_xlabel("rapidity")

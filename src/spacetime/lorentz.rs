@@ -91,7 +91,7 @@ impl Lorentz {
     pub fn apply(&self, event: Event) -> Event {
         let direction = self.boost.direction();
         let heading = self.boost.heading();
-        let scale = harmless_scale(event.position.max(DVec3::splat(event.time.abs())));
+        let scale = harmless_scale(event.position.abs().max(DVec3::splat(event.time.abs())));
         let (time, position) = (event.time * scale, event.position * scale);
         let (parallel, parallel_low) = exact::along(heading, position);
         let cone = |sign: f64| {
