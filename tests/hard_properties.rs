@@ -197,6 +197,24 @@ fn degenerate_triangles_make_finite_files() {
     }
 }
 
+/// Ahead of the observer an error is magnified by `exp(eta)`, behind him by 1: nowhere by more or less.
+#[test]
+fn the_condition_is_the_largest_stretch_at_a_vertex() {
+    let velocity = Velocity::from_gamma(1000.0, DVec3::X).expect("valid");
+    for (place, expected) in [(1.0, velocity.stretch()), (-1.0, 1.0)] {
+        let mesh = triangle([1.0, 2.0, 3.0].map(|x| DVec3::X * (place * x)));
+        let stage = stage(&mesh, DVec3::ZERO, velocity);
+        let made = stage
+            .photosurfaces(0, Wanted::default())
+            .next()
+            .expect("one part");
+        let condition = made.facts.condition;
+        assert!(condition >= expected, "{condition}");
+        // The rounding of an offset turns it by an epsilon, which counts gamma times behind.
+        assert!(condition <= expected * (1.0 + 1e-12) + 1e-9, "{condition}");
+    }
+}
+
 #[test]
 fn no_triangles_and_no_numbers_are_clear_errors() {
     for corners in [vec![], vec![DVec3::X]] {
