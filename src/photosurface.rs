@@ -23,6 +23,7 @@ pub use budget::Prediction;
 pub use facts::{Facts, SceneFacts};
 pub use names::step_label;
 pub use seen::VertexData;
+use seen::condition;
 
 /// The observer's marker in files.
 const MARKER_NAME: &str = "observer";
@@ -258,6 +259,7 @@ impl Stage {
             relative_rapidity: relative.rapidity(),
             vertices: surface.seen.positions().len(),
             triangles: surface.seen.triangles().len(),
+            condition: condition(view, surface.part.mesh()),
             certificate: surface.certificate,
         };
         Photosurface {

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use common::oracle::{self, Big, big, big_vector, small};
 use common::{RELATIVE, Random, TURN, Worst, composition_swings};
-use photosurface::{DVec3, Event, Lorentz, Velocity};
+use photosurface::{DVec3, Event, Lorentz, Velocity, View, WorldLine};
 
 /// A pair of boosts, first and second, and what their directions make of rounding.
 struct Pair {
@@ -243,5 +243,69 @@ fn collinear_boosts_compose_to_the_sum_of_rapidities_exactly() {
         assert_eq!(relative.boost_velocity().rapidity(), (b - a).abs());
         let forward = first.direction() * (b - a).signum();
         assert_eq!(relative.boost_velocity().direction(), forward);
+    }
+}
+
+/// 10,000 boosts along one direction of 0.001 have a rapidity of 10, but for the roundings of their sum;
+/// 1000 boosts anywhere and the same back leave what 2000 roundings of compositions may.
+#[test]
+fn many_compositions_do_not_drift() {
+    let steps = 10_000;
+    let step = Lorentz::boost(Velocity::from_rapidity(1e-3, DVec3::X).expect("valid"));
+    let mut whole = Lorentz::IDENTITY;
+    for _ in 0..steps {
+        whole = whole.then(&step);
+    }
+    let boost = whole.boost_velocity();
+    let limit = f64::from(steps) * RELATIVE * 10.0;
+    assert!((boost.rapidity() - 10.0).abs() <= limit, "{boost:?}");
+    assert_eq!(boost.direction(), DVec3::X);
+
+    // There by many ways and back: nothing is left but the roundings, which rapidities of 1 magnify by e at most.
+    let mut random = Random::new(9);
+    let mut there = Lorentz::IDENTITY;
+    let mut ways = Vec::new();
+    for _ in 0..1000 {
+        let velocity = Velocity::from_rapidity(random.between(0.0, 1e-2), random.direction());
+        let way = Lorentz::boost(velocity.expect("valid"));
+        there = there.then(&way);
+        ways.push(way);
+    }
+    for way in ways.iter().rev() {
+        there = there.then(&way.inverse());
+    }
+    let left = there.boost_velocity().rapidity();
+    assert!(left <= 2000.0 * 3.0 * (RELATIVE + TURN), "{left:e} is left");
+    let turned = 2.0 * there.rotation().xyz().length();
+    assert!(
+        turned <= 2000.0 * 3.0 * (RELATIVE + TURN),
+        "turned by {turned:e}"
+    );
+}
+
+/// At gamma 1e6 along one direction a fleet is at rest with its observer, and what is faster by a rapidity of 0.5
+/// comes out as slow as that.
+#[test]
+fn a_fast_fleet_is_slow_to_one_of_its_own() {
+    for direction in [DVec3::X, DVec3::new(1.0, 2.0, 3.0)] {
+        let fleet = Velocity::from_gamma(1e6, direction).expect("valid");
+        let relative = Lorentz::between(fleet, fleet);
+        assert_eq!(relative, Lorentz::boost(relative.boost_velocity()));
+        assert_eq!(relative.boost_velocity().rapidity(), 0.0);
+        let origin = |place| WorldLine {
+            origin: Event::new(0.0, place),
+            velocity: fleet,
+        };
+        let across = direction.any_orthonormal_vector();
+        let view = View::new(&origin(DVec3::ZERO), &origin(DVec3::ZERO), 2.0);
+        for place in [direction, -direction, across] {
+            assert_eq!(view.seen_position(place), place);
+        }
+        // Rapidities that are numbers, so that their difference is.
+        let [slow, fast] =
+            [14.5, 15.0].map(|eta| Velocity::from_rapidity(eta, direction).expect("valid"));
+        let relative = Lorentz::between(slow, fast).boost_velocity();
+        assert_eq!(relative.rapidity(), 0.5);
+        assert_eq!(relative.direction(), slow.direction());
     }
 }

@@ -93,7 +93,7 @@ impl ObserverArgs {
 
     fn velocity(&self, observer: &Observer) -> anyhow::Result<Velocity> {
         let scene = observer.velocity;
-        let direction = self.direction.unwrap_or(scene.direction());
+        let direction = self.direction.unwrap_or(scene.heading());
         if self.direction.is_some() {
             Velocity::from_rapidity(0.0, direction).context("--direction")?;
         }

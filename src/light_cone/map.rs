@@ -13,9 +13,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use glam::{DMat3, DVec3, Vec3Swizzles};
+use glam::{DMat3, DVec3};
 
-use crate::spacetime::{Velocity, unit};
+use crate::spacetime::{Velocity, exact, harmless_scale, heading, length, unit};
 
 /// The map from points at rest to the places where one moving observer sees them.
 ///
@@ -37,6 +37,9 @@ use crate::spacetime::{Velocity, unit};
 pub struct PhotosurfaceMap {
     /// Direction in which the observer moves through the rest frame.
     direction: DVec3,
+    /// The same as it was given, of any length: `direction` is rounded.
+    heading: DVec3,
+    heading_length: f64,
     /// `exp(eta)`
     stretch: f64,
     /// `exp(-eta)`
@@ -45,14 +48,46 @@ pub struct PhotosurfaceMap {
     gamma_beta: f64,
 }
 
-/// An offset in light-cone coordinates along the direction of motion.
+/// Offsets larger than this are divided by [`BACK`], lest their squares and sums overflow.
+const HUGE: f64 = 1e140;
+const BACK: f64 = f64::from_bits((1023 + 600) << 52);
+
+/// An offset in light-cone coordinates along the direction of motion, `u = r - d_par` and `w = r + d_par`.
 struct LightCone {
-    /// The part across the direction of motion.
+    /// The part across the direction of motion, and its length.
     across: DVec3,
-    /// `u = r - d_par >= 0`
-    u: f64,
-    /// `w = r + d_par >= 0`
-    w: f64,
+    distance_across: f64,
+    /// Whether it is ahead of the observer: then `w` is the larger of the two.
+    ahead: bool,
+    larger: f64,
+    /// What the distance across has to be multiplied by to give the smaller one.
+    ratio: f64,
+}
+
+impl LightCone {
+    /// `factor u`
+    fn u_times(&self, factor: f64) -> f64 {
+        self.times(factor, !self.ahead)
+    }
+
+    /// `factor w`
+    fn w_times(&self, factor: f64) -> f64 {
+        self.times(factor, self.ahead)
+    }
+
+    fn times(&self, factor: f64, larger: bool) -> f64 {
+        if larger {
+            factor * self.larger
+        } else {
+            // Not the product first: 1e152 ahead and 1 aside `u` is 1e-152, and seen from twice as fast it vanishes.
+            (factor * self.ratio) * self.distance_across
+        }
+    }
+
+    /// The distance at rest.
+    fn distance(&self) -> f64 {
+        0.5 * self.larger + 0.5 * self.times(1.0, false)
+    }
 }
 
 impl PhotosurfaceMap {
@@ -60,8 +95,10 @@ impl PhotosurfaceMap {
     pub fn new(observer: &Velocity) -> Self {
         Self {
             direction: observer.direction(),
-            stretch: observer.rapidity().exp(),
-            squeeze: (-observer.rapidity()).exp(),
+            heading: observer.heading(),
+            heading_length: observer.heading().length(),
+            stretch: observer.stretch(),
+            squeeze: 1.0 / observer.stretch(),
             gamma: observer.gamma(),
             gamma_beta: observer.gamma_beta(),
         }
@@ -76,11 +113,11 @@ impl PhotosurfaceMap {
     ///
     /// # Accuracy
     ///
-    /// A few units in the last place of `|result|` where the motion is along an axis, at any rapidity
-    /// (measured to 200: two). Else as good as a direction known to its last place allows: to
-    /// `4 epsilon r (1 + (gamma - 1) sin theta)` more, which counts only close behind the observer
-    /// (`tests/accuracy.rs`). Continuous everywhere; the observer's own place maps to zero. For
-    /// coordinates up to 1e150; beyond, a result may overflow.
+    /// At most 8 units in the last place of `|result|`, in any direction and at any rapidity, also straight behind
+    /// and next to it, where all but `exp(-2 eta)` of a distance cancels (measured: 3.5 in `tests/accuracy.rs`
+    /// and `tests/hard_cases.rs`). The direction of motion counts as it was given, brought to unit length exactly.
+    /// Continuous everywhere; the observer's own place maps to zero. Beyond what `f64` holds a coordinate
+    /// becomes infinite, never NaN.
     ///
     /// # Reference
     ///
@@ -100,15 +137,18 @@ impl PhotosurfaceMap {
             // At rest everything is where it is, to the last bit.
             return offset;
         }
-        let LightCone { across, u, w } = self.light_cone(offset);
-        across + self.direction * (0.5 * (factor_w * w - factor_u * u))
+        let (cone, back) = self.light_cone(offset);
+        let along = 0.5 * (cone.w_times(factor_w) - cone.u_times(factor_u));
+        // What is beyond f64 overflows to infinity, not to the NaN of zero times infinity.
+        let along = along.clamp(f64::MIN, f64::MAX);
+        (cone.across + self.direction * along) * back
     }
 
     /// The time of the emission event in the observer's frame, minus the distance at which the point
     /// is seen. Zero at the observer, else negative.
     pub fn emission_time(&self, offset_rest: DVec3) -> f64 {
-        let LightCone { u, w, .. } = self.light_cone(offset_rest);
-        -0.5 * (self.stretch * w + self.squeeze * u)
+        let (cone, back) = self.light_cone(offset_rest);
+        -0.5 * (cone.w_times(self.stretch) + cone.u_times(self.squeeze)) * back
     }
 
     /// Frequency seen over frequency emitted, `D = gamma (1 + beta cos)`.
@@ -116,13 +156,11 @@ impl PhotosurfaceMap {
     /// It is also `|seen_position| / |offset|` and the determinant of [`PhotosurfaceMap::jacobian`]. At
     /// the observer itself, where it depends on the direction, its mean over all directions: `gamma`.
     pub fn doppler_factor(&self, offset_rest: DVec3) -> f64 {
-        let LightCone { u, w, .. } = self.light_cone(offset_rest);
-        let twice_r = u + w;
-        if twice_r == 0.0 {
+        let (cone, _) = self.light_cone(offset_rest);
+        if cone.larger == 0.0 {
             return self.gamma;
         }
-        // Ratios first: `squeeze * u` of a subnormal `u` is zero.
-        self.stretch * (w / twice_r) + self.squeeze * (u / twice_r)
+        self.doppler_factor_of(&cone)
     }
 
     /// The derivative of [`PhotosurfaceMap::seen_position`]: `I + n a^T`,
@@ -134,10 +172,8 @@ impl PhotosurfaceMap {
     /// At the observer itself, where there is none, that of the boost alone (`d / r` taken as 0).
     pub fn jacobian(&self, offset_rest: DVec3) -> DMat3 {
         let n = self.direction;
-        let LightCone { across, u, w } = self.light_cone(offset_rest);
-        let r = 0.5 * (w + u);
-        let toward_across = if r > 0.0 { across / r } else { DVec3::ZERO };
-        let b = n * self.doppler_factor(offset_rest) + toward_across * self.gamma_beta;
+        let (toward_across, doppler_factor) = self.toward_across(offset_rest);
+        let b = n * doppler_factor + toward_across * self.gamma_beta;
         let column = |axis: DVec3| (axis - n * n.dot(axis)) + n * b.dot(axis);
         DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))
     }
@@ -167,22 +203,17 @@ impl PhotosurfaceMap {
     ///
     /// # Accuracy
     ///
-    /// Rounded up, and by at most 40 epsilon where the motion is along an axis, at any rapidity. Else the
-    /// angle may be off by as much as a direction known to its last place allows, 16 epsilon, which counts only
-    /// close behind the observer (`tests/accuracy.rs`). NaN and negative radii get the bound
-    /// that holds everywhere.
+    /// Rounded up, and by at most 40 epsilon, at any rapidity (`tests/accuracy.rs`). NaN and negative radii get the
+    /// bound that holds everywhere.
     pub fn stretch_bound(&self, offset_rest: DVec3, radius: f64) -> f64 {
         let everywhere = self.stretch * (1.0 + 4.0 * f64::EPSILON);
         let n = self.direction;
         // Only ratios count; powers of two lose no digits.
         let scale = harmless_scale(offset_rest);
         let offset = offset_rest * scale;
-        // Two products and their difference round, and so has the offset itself as a difference.
-        let products = |a: DVec3, b: DVec3| (a.yzx() * b.zxy()).abs();
-        let rounding = products(n, offset) + products(offset, n);
-        let sideways = n.cross(offset).abs() + rounding * (2.0 * f64::EPSILON);
+        let (cone, _) = self.light_cone(offset);
         // Angles from straight behind, where the small ones are: no digits are lost there.
-        let from_behind = sideways.length().atan2(-n.dot(offset)) * (1.0 + 16.0 * f64::EPSILON);
+        let from_behind = cone.distance_across.atan2(-n.dot(offset)) * (1.0 + 16.0 * f64::EPSILON);
         let sine = radius * scale / offset.length() * (1.0 + 8.0 * f64::EPSILON);
         let half_angle = 0.5 * (from_behind + sine.asin() * (1.0 + 4.0 * f64::EPSILON));
         // Written so that NaN, also from a sine above 1, is refused.
@@ -204,16 +235,17 @@ impl PhotosurfaceMap {
     /// `D n_across + (n.n_rest) (n - gamma beta d_across / r)`: two terms, neither of which cancels in
     /// itself.
     ///
-    /// A zero normal, or one so small that it vanishes, stays zero.
+    /// A zero normal stays zero.
     pub fn seen_normal(&self, offset_rest: DVec3, normal_rest: DVec3) -> DVec3 {
         let n = self.direction;
-        let LightCone { across, u, w } = self.light_cone(offset_rest);
-        let r = 0.5 * (w + u);
-        let toward_across = if r > 0.0 { across / r } else { DVec3::ZERO };
+        let (toward_across, doppler_factor) = self.toward_across(offset_rest);
+        let Some(normal_rest) = heading(normal_rest) else {
+            return DVec3::ZERO;
+        };
         let normal_par = n.dot(normal_rest);
         let normal_across = normal_rest - n * normal_par;
-        let normal = normal_across * self.doppler_factor(offset_rest)
-            + (n - toward_across * self.gamma_beta) * normal_par;
+        let normal =
+            normal_across * doppler_factor + (n - toward_across * self.gamma_beta) * normal_par;
         unit(normal).unwrap_or(DVec3::ZERO)
     }
 
@@ -221,60 +253,87 @@ impl PhotosurfaceMap {
     /// tangents go with the Jacobian. A zero tangent stays zero.
     pub fn seen_tangent(&self, offset_rest: DVec3, tangent_rest: DVec3) -> DVec3 {
         let n = self.direction;
-        let LightCone { across, u, w } = self.light_cone(offset_rest);
-        let r = 0.5 * (w + u);
-        let toward_across = if r > 0.0 { across / r } else { DVec3::ZERO };
+        let (toward_across, doppler_factor) = self.toward_across(offset_rest);
+        let Some(tangent_rest) = heading(tangent_rest) else {
+            return DVec3::ZERO;
+        };
         let tangent_par = n.dot(tangent_rest);
         let tangent_across = tangent_rest - n * tangent_par;
-        let seen_par = self.doppler_factor(offset_rest) * tangent_par
-            + self.gamma_beta * toward_across.dot(tangent_across);
+        let seen_par =
+            doppler_factor * tangent_par + self.gamma_beta * toward_across.dot(tangent_across);
         unit(tangent_across + n * seen_par).unwrap_or(DVec3::ZERO)
+    }
+
+    /// The part across the motion of the direction in which a point is at rest, and the Doppler factor; at the observer
+    /// itself zero and their mean.
+    fn toward_across(&self, offset_rest: DVec3) -> (DVec3, f64) {
+        let (cone, _) = self.light_cone(offset_rest);
+        let r = cone.distance();
+        if r > 0.0 {
+            (cone.across / r, self.doppler_factor_of(&cone))
+        } else {
+            (DVec3::ZERO, self.gamma)
+        }
+    }
+
+    /// With `q` the ratio of `|across|` to the larger of `u` and `w`, that of the smaller one is `q^2`.
+    fn doppler_factor_of(&self, cone: &LightCone) -> f64 {
+        let (of_larger, of_smaller) = if cone.ahead {
+            (self.stretch, self.squeeze)
+        } else {
+            (self.squeeze, self.stretch)
+        };
+        // Ratios only: `squeeze * u` of a subnormal `u` is zero.
+        (of_larger + (of_smaller * cone.ratio) * cone.ratio) / (1.0 + cone.ratio * cone.ratio)
     }
 
     /// Splits an offset into its part across the motion and its light-cone coordinates along it.
     ///
-    /// The smaller of `u` and `w` comes from `u w = |across|^2`: as a difference it would be lost.
-    fn light_cone(&self, offset: DVec3) -> LightCone {
+    /// The smaller of `u` and `w` comes from `u w = |across|^2`: as a difference it would be lost. Within 45
+    /// degrees of the line of motion the part across is in danger, too: close behind a fast observer all of what is
+    /// seen depends on it, and products with a rounded direction leave it only the digits of `r`.
+    ///
+    /// Huge offsets are made smaller on the way; the second result is what makes up for that.
+    fn light_cone(&self, offset: DVec3) -> (LightCone, f64) {
+        if offset.abs().max_element() > HUGE {
+            let (cone, _) = self.light_cone(offset / BACK);
+            return (cone, BACK);
+        }
         let n = self.direction;
         let parallel = n.dot(offset);
         let sideways = n.cross(offset);
         let distance_across = length(sideways);
-        let larger = parallel.hypot(distance_across) + parallel.abs();
-        let smaller = if larger > 0.0 {
-            // Not the square: a place seen 1e152 ahead and 1 aside has a `u` of 1e-152.
-            distance_across * (distance_across / larger)
+        let cone = if parallel.abs() > distance_across {
+            self.nearly_collinear(offset, parallel)
         } else {
-            0.0
+            LightCone::new(sideways.cross(n), distance_across, parallel)
         };
-        let (u, w) = if parallel > 0.0 {
-            (smaller, larger)
-        } else {
-            (larger, smaller)
-        };
-        LightCone {
-            across: sideways.cross(n),
-            u,
-            w,
-        }
+        (cone, 1.0)
+    }
+
+    #[inline(never)]
+    fn nearly_collinear(&self, offset: DVec3, parallel: f64) -> LightCone {
+        let scale = harmless_scale(offset);
+        let sideways = exact::cross(self.heading, offset * scale) / self.heading_length;
+        let across = sideways.cross(self.heading) / (self.heading_length * scale);
+        LightCone::new(across, length(sideways) / scale, parallel)
     }
 }
 
-/// The length of a vector, also where its square would overflow or lose digits.
-fn length(vector: DVec3) -> f64 {
-    // Powers of two lose no digits.
-    let scale = harmless_scale(vector);
-    (vector * scale).length() / scale
-}
-
-/// A power of two that brings a vector to a length whose square is no trouble.
-fn harmless_scale(vector: DVec3) -> f64 {
-    let largest = vector.abs().max_element();
-    if largest > 1e140 {
-        2f64.powi(-600)
-    } else if largest < 1e-140 {
-        2f64.powi(600)
-    } else {
-        1.0
+impl LightCone {
+    fn new(across: DVec3, distance_across: f64, parallel: f64) -> Self {
+        let larger = parallel.hypot(distance_across) + parallel.abs();
+        Self {
+            across,
+            distance_across,
+            ahead: parallel > 0.0,
+            larger,
+            ratio: if larger > 0.0 {
+                distance_across / larger
+            } else {
+                0.0
+            },
+        }
     }
 }
 

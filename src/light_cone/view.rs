@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::PhotosurfaceMap;
-use crate::spacetime::{Lorentz, Velocity, WorldLine};
+use crate::spacetime::{Event, Lorentz, Velocity, WorldLine, length};
 
 /// How an observer sees, at one event, everything that moves with one velocity.
 ///
@@ -15,12 +15,14 @@ use crate::spacetime::{Lorentz, Velocity, WorldLine};
 ///
 /// The observer's place in the rest frame is the boosted difference of the two worldlines' origins, plus
 /// the proper time times the observer's four-velocity in the rest frame: differences are taken of numbers
-/// as they are given, before anything is multiplied by `gamma`. The boosts from rest frame to scene and
+/// as they are given, before anything is multiplied by `gamma`, and what they round is kept. The boosts from rest frame to scene and
 /// from scene to observer together are one boost, which the photosurface map takes care of, and a
 /// rotation (Wigner's), which follows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     observer_rest: DVec3,
+    /// How large the numbers are that this place is a sum of.
+    place_size: f64,
     rest_to_observer: Lorentz,
     map: PhotosurfaceMap,
 }
@@ -30,12 +32,18 @@ impl View {
     pub fn new(observer: &WorldLine, object: &WorldLine, proper_time: f64) -> Self {
         let rest_to_observer = Lorentz::between(object.velocity, observer.velocity);
         let relative = rest_to_observer.boost_velocity();
-        let observer_in_rest_frame = WorldLine {
-            origin: Lorentz::boost(object.velocity).apply(observer.origin - object.origin),
+        let to_rest = Lorentz::boost(object.velocity);
+        let (difference, rounded) = observer.origin.exact_difference(&object.origin);
+        let origin = to_rest.apply(difference) + to_rest.apply(rounded);
+        let traveled = WorldLine {
+            origin: Event::default(),
             velocity: relative,
-        };
+        }
+        .at(proper_time);
+        let size = |event: Event| length(event.position).max(event.time.abs());
         Self {
-            observer_rest: observer_in_rest_frame.at(proper_time).position,
+            observer_rest: origin.position + traveled.position,
+            place_size: size(origin) + size(traveled),
             rest_to_observer,
             map: PhotosurfaceMap::new(&relative),
         }
@@ -49,6 +57,12 @@ impl View {
     /// The observer's place in the rest frame.
     pub fn observer_rest(&self) -> DVec3 {
         self.observer_rest
+    }
+
+    /// How large the numbers are that [`View::observer_rest`] is a sum of: it is off by a few units in the last place of
+    /// this, which may be more than of itself.
+    pub(crate) fn place_size(&self) -> f64 {
+        self.place_size
     }
 
     /// Where the point `position_rest` is seen, in the observer's frame.
@@ -80,8 +94,11 @@ impl View {
     /// A bound of how much anything in the ball of `radius` about `position_rest` is stretched: how much
     /// farther apart, at most, two points of the ball are seen than they are at rest.
     pub fn stretch_bound(&self, position_rest: DVec3, radius: f64) -> f64 {
-        // The rotation that follows the map stretches nothing.
-        self.map.stretch_bound(self.offset(position_rest), radius)
+        // The rotation that follows the map stretches nothing. The offset is a difference that has been rounded: the true
+        // ball is in one a little larger.
+        let offset = self.offset(position_rest);
+        let rounding = f64::EPSILON * length(offset);
+        self.map.stretch_bound(offset, radius + rounding)
     }
 
     /// The time, in the observer's frame, at which the light seen now left the point; not positive.
@@ -99,6 +116,10 @@ impl View {
     }
 
     fn turned(&self, vector: DVec3) -> DVec3 {
+        if !vector.is_finite() {
+            // What is beyond f64 has no direction left to turn.
+            return DVec3::INFINITY;
+        }
         self.rest_to_observer.rotation() * vector
     }
 }

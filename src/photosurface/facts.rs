@@ -26,6 +26,10 @@ pub struct Facts {
     pub vertices: usize,
     /// How many triangles it has.
     pub triangles: usize,
+    /// How many times an error of the source's coordinates, taken at rest, is magnified at most: the largest stretch
+    /// at a vertex, from 1 to `exp(rapidity)`. A source with `f32` coordinates 1 in size is known to `6e-8`; with a
+    /// condition of 2000 its photosurface is to `1.2e-4`, whatever the certificate says.
+    pub condition: f64,
     /// How far it is from the true photosurface.
     pub certificate: Certificate,
 }

@@ -60,3 +60,10 @@ pub(super) fn seen_mesh(view: &View, rest: &Mesh) -> Mesh {
     });
     rest.with_geometry(positions, normals, tangents)
 }
+
+/// The largest stretch at a vertex.
+pub(super) fn condition(view: &View, rest: &Mesh) -> f64 {
+    let jobs = rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
+    jobs.map(|&position| view.stretch_bound(position, 0.0))
+        .reduce(|| 1.0, f64::max)
+}

@@ -4,6 +4,8 @@ use std::ops::{Add, Mul, Sub};
 
 use glam::DVec3;
 
+use super::exact::two_sum;
+
 /// A point of spacetime in the coordinates of some frame, or the difference of two.
 ///
 /// Time and position share one unit (c = 1).
@@ -25,6 +27,18 @@ impl Event {
     pub fn interval(&self) -> f64 {
         let distance = self.position.length();
         (distance - self.time) * (distance + self.time)
+    }
+
+    /// `self - other` rounded, and what was rounded away.
+    pub(crate) fn exact_difference(&self, other: &Self) -> (Self, Self) {
+        let (time, time_low) = two_sum(self.time, -other.time);
+        let (x, x_low) = two_sum(self.position.x, -other.position.x);
+        let (y, y_low) = two_sum(self.position.y, -other.position.y);
+        let (z, z_low) = two_sum(self.position.z, -other.position.z);
+        (
+            Self::new(time, DVec3::new(x, y, z)),
+            Self::new(time_low, DVec3::new(x_low, y_low, z_low)),
+        )
     }
 }
 

@@ -6,9 +6,9 @@
 //! resulting boost and the Wigner rotation. [`compose_boosts`] evaluates `alpha`, `v`, `w` so that
 //! nothing cancels, neither for opposite nor for nearly equal velocities.
 
-use glam::DQuat;
+use glam::{DQuat, DVec3};
 
-use super::{Event, Velocity};
+use super::{Event, Velocity, exact, harmless_scale, length, unit};
 
 /// A proper orthochronous Lorentz transformation: a boost followed by a rotation.
 ///
@@ -45,15 +45,14 @@ impl Lorentz {
     ///
     /// # Accuracy
     ///
-    /// Rapidity, direction and rotation to a few units in the last place, at any pair of velocities, but
-    /// for what the rounding of the given directions does to them: where these are all but
-    /// opposite, `cosh` of half the larger rapidity times as much (`tests/lorentz.rs`). Collinear
-    /// boosts compose to the exact sum of their rapidities.
+    /// Rapidity, direction and rotation of two boosts to a few units in the last place, at any pair of velocities, also
+    /// all but equal and all but opposite ones (`tests/lorentz.rs`). Collinear boosts compose to the exact sum of
+    /// their rapidities. After a rotation the direction of the next boost is one more rounded number, of which
+    /// all but opposite velocities make `cosh` of half the larger rapidity times as much.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         // (R2 B2) (R1 B1) = R2 R1 (R1^-1 B2 R1) B1: the second boost as seen before the first rotation.
-        let next_direction = self.rotation.inverse() * next.boost.direction();
-        let next_boost = Velocity::from_parts(next.boost.rapidity(), next_direction);
+        let next_boost = next.boost.turned(self.rotation.inverse());
         let (boost, wigner) = compose_boosts(&self.boost, &next_boost);
         Self {
             boost,
@@ -64,9 +63,8 @@ impl Lorentz {
     /// The transformation back.
     #[must_use]
     pub fn inverse(&self) -> Self {
-        let direction = -(self.rotation * self.boost.direction());
         Self {
-            boost: Velocity::from_parts(self.boost.rapidity(), direction),
+            boost: self.boost.reversed().turned(self.rotation),
             rotation: self.rotation.inverse(),
         }
     }
@@ -83,21 +81,35 @@ impl Lorentz {
 
     /// The coordinates of `event` in the new frame.
     ///
-    /// In light-cone coordinates `t + x`, `t - x` along the boost, which it only multiplies: near
-    /// light speed nothing cancels but what `event` itself leaves uncertain.
+    /// In light-cone coordinates `t + x`, `t - x` along the boost, which it only multiplies. These are taken with twice
+    /// the digits: what cancels in them, as for something that keeps up with light for a long time, leaves all digits of
+    /// what remains.
+    ///
+    /// # Accuracy
+    ///
+    /// A few units in the last place of the larger of the new time and the new distance (`tests/lorentz.rs`).
     pub fn apply(&self, event: Event) -> Event {
         let direction = self.boost.direction();
-        let parallel = direction.dot(event.position);
-        let ahead = (event.time + parallel) * (-self.boost.rapidity()).exp();
-        let behind = (event.time - parallel) * self.boost.rapidity().exp();
-        let new_parallel = 0.5 * (ahead - behind);
-        let across = event.position - direction * parallel;
+        let heading = self.boost.heading();
+        let scale = harmless_scale(event.position.abs().max(DVec3::splat(event.time.abs())));
+        let (time, position) = (event.time * scale, event.position * scale);
+        let (parallel, parallel_low) = exact::along(heading, position);
+        let cone = |sign: f64| {
+            let (sum, rounded) = exact::two_sum(time, sign * parallel);
+            sum + (rounded + sign * parallel_low)
+        };
+        let ahead = cone(1.0) / self.boost.stretch();
+        let behind = cone(-1.0) * self.boost.stretch();
+        let across = exact::cross(heading, position).cross(heading) / heading.length_squared();
         Event {
-            time: 0.5 * (ahead + behind),
-            position: self.rotation * (across + direction * new_parallel),
+            time: (0.5 * ahead + 0.5 * behind) / scale,
+            position: self.rotation * ((across + direction * (0.5 * ahead - 0.5 * behind)) / scale),
         }
     }
 }
+
+/// Rapidities below this add up like vectors: what relativity changes is smaller by their square.
+const GALILEAN: f64 = 1e-100;
 
 /// The boost and the Wigner rotation after it that `first`, then `second` amount to.
 ///
@@ -110,71 +122,99 @@ impl Lorentz {
 ///
 /// ```text
 /// v = (n2 + n1)/2 sinh((eta2 + eta1)/2) + h/2 sinh((eta2 - eta1)/2)      two orthogonal parts
-/// alpha = cosh((eta2 + eta1)/2) - s1 s2 |h|^2 / 2,      w = s1 s2 h x (n2 + n1) / 2
+/// alpha = cosh((eta2 + eta1)/2) - s1 s2 |h|^2 / 2,      w = s1 s2 n2 x n1
 /// ```
 ///
-/// and differences are taken of the given numbers only. `|v| = sinh(eta/2)` of the result, the rotation's
-/// quaternion is `(alpha, -w)` normalised, and `v` is the boost's direction turned half way.
+/// and `h = 2 (n1 x n2) x (n2 + n1) / |n2 + n1|^2` from the cross product of the directions as they were given,
+/// which is exact. `|v| = sinh(eta/2)` of the result, the rotation's quaternion is `(alpha, -w)` normalised, and
+/// `v` is the boost's direction turned half way.
 fn compose_boosts(first: &Velocity, second: &Velocity) -> (Velocity, DQuat) {
-    let n2 = second.direction();
-    let eta2 = second.rapidity();
-    let flip = if first.direction().dot(n2) < 0.0 {
+    let flip = if first.direction().dot(second.direction()) < 0.0 {
         -1.0
     } else {
         1.0
     };
-    let n1 = first.direction() * flip;
-    let eta1 = first.rapidity() * flip;
+    let (n1, n2) = (first.direction() * flip, second.direction());
+    let (eta1, eta2) = (first.rapidity() * flip, second.rapidity());
+    let (h1, h2) = (first.heading() * flip, second.heading());
+    let sine = exact::cross(h1, h2) / (h1.length() * h2.length());
 
-    if n1 == n2 || eta1 == 0.0 || eta2 == 0.0 {
-        let (direction, rapidity) = if eta2 == 0.0 {
-            (n1, eta1)
+    if sine == DVec3::ZERO || eta1 == 0.0 || eta2 == 0.0 {
+        let stretch1 = signed_stretch(first, flip);
+        let carrier = if eta2 == 0.0 { first } else { second };
+        let flipped = if eta2 == 0.0 { flip } else { 1.0 };
+        let (rapidity, stretch) = (eta2 + eta1, second.stretch() * stretch1);
+        let velocity = if flipped < 0.0 {
+            carrier.with_signed_rapidity(-rapidity, 1.0 / stretch)
         } else {
-            (n2, eta2 + eta1)
+            carrier.with_signed_rapidity(rapidity, stretch)
         };
-        let velocity = Velocity::from_parts(rapidity.abs(), direction * rapidity.signum());
         return (velocity, DQuat::IDENTITY);
     }
 
-    let (sum, difference) = (n2 + n1, n2 - n1);
+    let sum = n2 + n1;
+    let difference = 2.0 * sine.cross(sum) / sum.length_squared();
+    if eta1.abs().max(eta2) < GALILEAN {
+        // Not by halves: half of the smallest number is none.
+        let scale = 2f64.powi(300);
+        let (eta1, eta2) = (eta1 * scale, eta2 * scale);
+        let vector = 0.5 * (sum * (eta2 + eta1) + difference * (eta2 - eta1));
+        let rapidity = length(vector);
+        let direction = unit(vector).unwrap_or(n2);
+        let velocity = Velocity::from_parts(rapidity / scale, 1.0, direction);
+        return (velocity, DQuat::IDENTITY);
+    }
+
     let s1_s2 = (0.5 * eta1).sinh() * (0.5 * eta2).sinh();
-    let (sinh_plus, cosh_plus) = sinh_cosh_of_sum(0.5 * eta2, 0.5 * eta1);
-    let (sinh_minus, _) = sinh_cosh_of_sum(0.5 * eta2, -0.5 * eta1);
+    let (root1, root2) = (signed_stretch(first, flip).sqrt(), second.stretch().sqrt());
+    let (sinh_plus, cosh_plus) = sinh_cosh(0.5 * (eta2 + eta1), root2 * root1);
+    let (sinh_minus, _) = sinh_cosh(0.5 * (eta2 - eta1), root2 / root1);
     let v = 0.5 * (sum * sinh_plus + difference * sinh_minus);
     let alpha = cosh_plus - 0.5 * s1_s2 * difference.length_squared();
-    let w = difference.cross(sum) * (0.5 * s1_s2);
+    let w = sine * -s1_s2;
 
     // |v| up to sinh(350) = 1e152: its square is within f64.
-    let norm = alpha.hypot(w.length());
+    let norm = alpha.hypot(length(w));
     let (alpha, w) = (alpha / norm, w / norm);
-    let half_rapidity_sinh = v.length();
-    if half_rapidity_sinh == 0.0 {
+    let half_rapidity_sinh = length(v);
+    let Some(half_turned) = unit(v) else {
         return (Velocity::ZERO, DQuat::IDENTITY);
-    }
-    let half_turned = v / half_rapidity_sinh;
+    };
     let direction = half_turned * alpha + w.cross(half_turned);
+    let root = half_rapidity_sinh + half_rapidity_sinh.hypot(1.0);
     (
-        Velocity::from_parts(2.0 * half_rapidity_sinh.asinh(), direction.normalize()),
+        Velocity::from_parts(
+            2.0 * half_rapidity_sinh.asinh(),
+            root * root,
+            direction.normalize(),
+        ),
         DQuat::from_xyzw(-w.x, -w.y, -w.z, alpha),
     )
 }
 
-/// The hyperbolic sine and cosine of `a + b`.
-///
-/// A large sum is not rounded before it is exponentiated: half a unit in the last place of 100 would be
-/// 64 units of the result, which the rotation, a ratio of such results, has no reason to bear.
-fn sinh_cosh_of_sum(a: f64, b: f64) -> (f64, f64) {
-    if (a + b).abs() < 1.0 {
-        return ((a + b).sinh(), (a + b).cosh());
+/// `exp` of the rapidity with the sign `flip`.
+fn signed_stretch(velocity: &Velocity, flip: f64) -> f64 {
+    if flip < 0.0 {
+        1.0 / velocity.stretch()
+    } else {
+        velocity.stretch()
     }
-    let (grow, shrink) = (a.exp() * b.exp(), (-a).exp() * (-b).exp());
-    (0.5 * (grow - shrink), 0.5 * (grow + shrink))
+}
+
+/// The hyperbolic sine and cosine of a number of which the exponential is known better.
+///
+/// Half a unit in the last place of 100 would be 64 units of the result, which the rotation, a ratio of such
+/// results, has no reason to bear.
+fn sinh_cosh(number: f64, exponential: f64) -> (f64, f64) {
+    if number.abs() < 1.0 {
+        return (number.sinh(), number.cosh());
+    }
+    let inverse = 1.0 / exponential;
+    (0.5 * (exponential - inverse), 0.5 * (exponential + inverse))
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
 
     fn velocity(beta: f64, direction: DVec3) -> Velocity {

@@ -4,6 +4,7 @@
 //! passive, they turn the coordinates of one frame into those of another.
 
 mod event;
+pub(crate) mod exact;
 mod lorentz;
 mod velocity;
 mod world_line;
@@ -19,6 +20,15 @@ use glam::DVec3;
 ///
 /// `None` for the zero vector and for a vector that is not finite.
 pub(crate) fn unit(vector: DVec3) -> Option<DVec3> {
+    let scaled = heading(vector)?;
+    let scaled = scaled / scaled.abs().max_element();
+    Some(scaled / scaled.length())
+}
+
+/// `vector` times a power of two, which loses no digits, so that its largest component is from 1 up to 2.
+///
+/// `None` for the zero vector and for a vector that is not finite.
+pub(crate) fn heading(vector: DVec3) -> Option<DVec3> {
     let largest = vector.abs().max_element();
     if !(largest > 0.0 && vector.is_finite()) {
         return None;
@@ -29,6 +39,25 @@ pub(crate) fn unit(vector: DVec3) -> Option<DVec3> {
     } else {
         vector
     };
-    let scaled = scaled / scaled.abs().max_element();
-    Some(scaled / scaled.length())
+    let bits = scaled.abs().max_element().to_bits() & f64::INFINITY.to_bits();
+    Some(scaled / f64::from_bits(bits))
+}
+
+/// The length of a vector, also where its square would overflow or lose digits.
+pub(crate) fn length(vector: DVec3) -> f64 {
+    // Powers of two lose no digits.
+    let scale = harmless_scale(vector);
+    (vector * scale).length() / scale
+}
+
+/// A power of two that brings a vector to a length whose square is no trouble.
+pub(crate) fn harmless_scale(vector: DVec3) -> f64 {
+    let largest = vector.abs().max_element();
+    if largest > 1e140 {
+        2f64.powi(-600)
+    } else if largest < 1e-140 {
+        2f64.powi(600)
+    } else {
+        1.0
+    }
 }

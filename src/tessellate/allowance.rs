@@ -7,6 +7,10 @@ use crate::light_cone::View;
 /// The largest gap `e`, in the rest frame before the factor `gamma beta`, that an edge or a triangle may
 /// have.
 #[derive(Clone, Copy, Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "there is one for a mesh, and boxed it could not be copied"
+)]
 pub(crate) enum Allowance {
     /// The same everywhere.
     Everywhere(f64),

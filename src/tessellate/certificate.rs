@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::triangle_gap;
 use crate::light_cone::View;
 use crate::mesh::Mesh;
+use crate::spacetime::length;
 
 /// Room for the few roundings of a product of bounds.
 const UP: f64 = 1.0 + 8.0 * f64::EPSILON;
@@ -56,9 +57,9 @@ pub enum Precision {
 /// # Derivation
 ///
 /// The place in the rest frame is off by a few units in the last place of the coordinates that it is computed
-/// from (the object's and the observer's place, the interpolation of new vertices): at most 8 epsilon of their
-/// size, which the map stretches by at most `stretch`. The map itself adds at most 16 epsilon of the place and
-/// what a direction known to its last place makes of it, 4 epsilon of `stretch r`. In a file with `f32` each
+/// from (the object's place, the numbers that the observer's place is a sum of, the interpolation of new vertices): at
+/// most 8 epsilon of their size, which the map stretches by at most `stretch`. The map itself adds at most 16 epsilon
+/// of the place; what a composed velocity, known to its last place, makes of it is 4 epsilon of `stretch r`. In a file with `f32` each
 /// coordinate relative to the offset, at most half the extent and a sixteenth of the largest extent, is
 /// rounded; morph targets add a difference, at most twice as large, and so round it three times.
 pub(crate) fn rounding_bound(
@@ -71,10 +72,9 @@ pub(crate) fn rounding_bound(
     let largest = |points: &[DVec3]| {
         points
             .iter()
-            .fold(0.0f64, |l, p| l.max(p.length_squared()))
-            .sqrt()
+            .fold(0.0f64, |largest, &point| largest.max(length(point)))
     };
-    let size_rest = largest(rest.positions()) + view.observer_rest().length();
+    let size_rest = largest(rest.positions()) + view.place_size();
     let size_seen = largest(seen.positions());
     let double = f64::EPSILON * (16.0 * stretch * size_rest + 16.0 * size_seen);
     let Some(Singles { extent, roundings }) = in_file else {

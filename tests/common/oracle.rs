@@ -104,14 +104,13 @@ pub(crate) fn square_root(value: &Big) -> Big {
 
 /// The pure boost into the frame of something that moves with `velocity`.
 ///
-/// The rapidity is taken as exact. So is the direction of the vector [`Velocity::direction`], which
-/// in `f64` is of unit length only to its last place.
+/// The rapidity is taken as exact. So is the direction as it was given, [`Velocity::heading`].
 pub(crate) fn boost(velocity: &Velocity) -> Matrix {
     let growth = big(velocity.rapidity()).exp();
     let shrink = big(1.0) / &growth;
     let gamma = (growth.clone() + &shrink) / big(2.0);
     let gamma_beta = (growth - &shrink) / big(2.0);
-    let n = normalized(&big_vector(velocity.direction()));
+    let n = normalized(&big_vector(velocity.heading()));
     std::array::from_fn(|row| {
         std::array::from_fn(|column| match (row, column) {
             (0, 0) => gamma.clone(),
