@@ -51,6 +51,11 @@ pub struct Attributes {
 }
 
 impl Attributes {
+    /// How many numbers a vertex has of them.
+    pub(crate) fn scalars(self) -> u64 {
+        u64::from(self.doppler) + u64::from(self.emission_time) + 3 * u64::from(self.rest_position)
+    }
+
     /// Whether nothing is asked for.
     pub fn is_empty(self) -> bool {
         self == Self::default()

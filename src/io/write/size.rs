@@ -49,9 +49,10 @@ impl Format {
             .filter(|(object, _)| fixed(object))
             .flat_map(|(_, parts)| parts.iter().map(|(_, part)| part))
             .collect();
+        let scalars = self.attributes(stage.scene()).scalars();
         match self {
             Self::Glb | Self::Gltf => {
-                let bytes = least_gltf(&parts, steps as u64);
+                let bytes = least_gltf(&parts, steps as u64, scalars);
                 let limit = u64::from(u32::MAX);
                 if self == Self::Glb && bytes > limit {
                     return Err(WriteError::TooLarge {
@@ -62,13 +63,13 @@ impl Format {
                 }
                 Ok(bytes)
             }
-            Self::Ply => least_ply(&parts, steps as u64),
+            Self::Ply => least_ply(&parts, steps as u64, scalars),
         }
     }
 }
 
 /// What differs from step to step is counted for each, what steps share once.
-fn least_gltf(parts: &[&Part], steps: u64) -> u64 {
+fn least_gltf(parts: &[&Part], steps: u64, scalars: u64) -> u64 {
     let mut shared = HashSet::new();
     let mut once = |address: usize, bytes: usize| match shared.insert(address) {
         true => bytes as u64,
@@ -77,7 +78,8 @@ fn least_gltf(parts: &[&Part], steps: u64) -> u64 {
     let mut bytes = 0;
     for part in parts {
         let mesh = part.mesh();
-        let of_vertex = 12 + mesh.normals().map_or(0, |_| 12) + mesh.tangents().map_or(0, |_| 16);
+        let vectors = 12 + mesh.normals().map_or(0, |_| 12) + mesh.tangents().map_or(0, |_| 16);
+        let of_vertex = vectors + 4 * scalars;
         bytes += steps * of_vertex * mesh.positions().len() as u64;
         bytes += once(
             mesh.triangles().as_ptr() as usize,
@@ -97,7 +99,7 @@ fn least_gltf(parts: &[&Part], steps: u64) -> u64 {
     bytes
 }
 
-fn least_ply(parts: &[&Part], steps: u64) -> Result<u64, WriteError> {
+fn least_ply(parts: &[&Part], steps: u64, scalars: u64) -> Result<u64, WriteError> {
     let count = |of: fn(&Mesh) -> usize| {
         let each = parts.iter().map(|part| of(part.mesh()) as u64);
         steps * each.sum::<u64>()
@@ -110,8 +112,8 @@ fn least_ply(parts: &[&Part], steps: u64) -> Result<u64, WriteError> {
         true => 4,
         false => 0,
     };
-    // Three f64 and four f32 a vertex, a byte and three u32 a triangle.
-    Ok((40 + color) * vertices + 13 * count(|mesh| mesh.triangles().len()))
+    // Three f64 and three f32 a vertex, a byte and three u32 a triangle.
+    Ok((36 + 4 * scalars + color) * vertices + 13 * count(|mesh| mesh.triangles().len()))
 }
 
 #[cfg(test)]
@@ -127,7 +129,7 @@ mod tests {
     #[test]
     fn the_least_size_is_just_below_that_of_the_file() {
         let scene = Scene::from_json(
-            r##"{ "objects": [
+            r##"{ "attributes": ["doppler", "rest_position"], "objects": [
                 { "name": "a", "shape": { "sphere": { "radius": 1 } }, "checker": "#ffffff", "position": [0, 3, 0] },
                 { "name": "b", "shape": { "torus": { "major_radius": 2, "minor_radius": 1 } } } ] }"##,
         )
@@ -139,7 +141,9 @@ mod tests {
             ..object.clone()
         };
         let objects = scene.objects().iter().zip(&models).map(own).collect();
+        let asked_for = scene.attributes();
         let scene = Scene::new(Observer::default(), objects).unwrap();
+        let scene = scene.with_attributes(asked_for);
         let stage = Stage::new(scene.with_steps(vec![0.0, 1.0, 2.0]).unwrap(), models);
         let wanted = Wanted {
             attributes: Format::Ply.attributes(stage.scene()),
