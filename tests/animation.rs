@@ -131,7 +131,8 @@ impl File {
             ))
             .success();
         let bytes = workplace.read("out.glb");
-        let json_length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+        let json_length =
+            u32::from_le_bytes(bytes[12..16].try_into().expect("as glTF has it")) as usize;
         Self {
             json: glb_json(&bytes),
             binary: bytes[28 + json_length..].to_vec(),
@@ -147,12 +148,13 @@ impl File {
             Some("VEC3") => 3,
             other => panic!("{other:?}"),
         };
-        let view = &self.json["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
+        let view = &self.json["bufferViews"]
+            [accessor["bufferView"].as_u64().expect("as glTF has it") as usize];
         let start = view["byteOffset"].as_u64().unwrap_or(0) as usize;
-        let length = 4 * components * accessor["count"].as_u64().unwrap() as usize;
+        let length = 4 * components * accessor["count"].as_u64().expect("as glTF has it") as usize;
         let numbers = self.binary[start..start + length].chunks_exact(4);
         numbers
-            .map(|b| f32::from_le_bytes(b.try_into().unwrap()))
+            .map(|b| f32::from_le_bytes(b.try_into().expect("as glTF has it")))
             .collect()
     }
 
@@ -161,10 +163,14 @@ impl File {
         let animation = &self.json["animations"][0];
         let channels = animation["channels"].as_array().expect("channels").iter();
         let track = |channel: &Value| {
-            let sampler = &animation["samplers"][channel["sampler"].as_u64().unwrap() as usize];
+            let sampler = &animation["samplers"]
+                [channel["sampler"].as_u64().expect("as glTF has it") as usize];
             (
-                channel["target"]["node"].as_u64().unwrap() as usize,
-                channel["target"]["path"].as_str().unwrap().to_owned(),
+                channel["target"]["node"].as_u64().expect("as glTF has it") as usize,
+                channel["target"]["path"]
+                    .as_str()
+                    .expect("as glTF has it")
+                    .to_owned(),
                 sampler["interpolation"]
                     .as_str()
                     .unwrap_or("LINEAR")
