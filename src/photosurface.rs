@@ -225,7 +225,7 @@ impl Stage {
     }
 
     fn plan<'a>(
-        &'a self,
+        &self,
         object: &Object,
         placed: &'a Placed,
         step: usize,
@@ -240,7 +240,7 @@ impl Stage {
         object: &Object,
         step: usize,
         view: &View,
-        surface: Surface,
+        surface: Surface<'_>,
         wanted: Wanted,
     ) -> Photosurface {
         let steps = self.scene.steps();
@@ -265,7 +265,7 @@ impl Stage {
         Photosurface {
             facts,
             vertex_data: VertexData::new(view, surface.part.mesh(), wanted.attributes),
-            material: surface.part.material,
+            material: surface.part.material.clone(),
             mesh: surface.seen,
         }
     }

@@ -176,7 +176,10 @@ fn export(
         attributes: format.attributes(stage.scene()),
         ..args.accuracy.wanted(precision)
     };
-    let (stage, _) = args.accuracy.within_budget(stage, wanted, verbosity);
+    let stage = match wanted.subdivide {
+        true => args.accuracy.within_budget(stage, wanted, verbosity).0,
+        false => stage,
+    };
     clock.stop("predict");
 
     let progress = progress_bar(&stage, verbosity);
