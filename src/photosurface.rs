@@ -70,6 +70,17 @@ pub struct Photosurface {
     pub material: Option<Arc<Material>>,
 }
 
+impl Photosurface {
+    /// What was asked for of its vertices.
+    pub fn attributes(&self) -> Attributes {
+        Attributes {
+            doppler: self.vertex_data.doppler_factors.is_some(),
+            emission_time: self.vertex_data.emission_times.is_some(),
+            rest_position: self.vertex_data.rest_positions.is_some(),
+        }
+    }
+}
+
 /// What is wanted of photosurfaces beside their shape, and how much may be spent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wanted {
