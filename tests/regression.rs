@@ -360,3 +360,21 @@ fn coordinates_of_any_size_do_not_halve_for_ever() {
         assert!(made.facts.certificate.minimum_triangles >= 1.0, "{size}");
     }
 }
+
+/// Offsets too large for their squares are made smaller first, which an infinite one never is: the stack was full. And
+/// infinities in the sum that is the observer's place left NaN of it.
+#[test]
+fn infinite_offsets_are_not_made_smaller_for_ever() {
+    let velocity = Velocity::from_beta(0.5, DVec3::X).unwrap();
+    let map = PhotosurfaceMap::new(&velocity);
+    let far = DVec3::new(f64::INFINITY, 1.0, 0.0);
+    assert!(!map.seen_position(far).is_finite());
+    assert!(map.stretch_bound(far, 1.0) >= velocity.stretch());
+    let at = |x| WorldLine {
+        origin: Event::new(x, DVec3::new(x, -x, 0.0)),
+        velocity,
+    };
+    let view = View::new(&at(f64::MAX), &at(f64::MIN), 1.0);
+    assert_eq!(view.observer_rest(), DVec3::INFINITY);
+    assert_eq!(view.seen_position(DVec3::X), DVec3::INFINITY);
+}
