@@ -72,10 +72,13 @@ impl Stage {
     ) -> f64 {
         let mut too_tight = 1.0;
         let mut loosening: f64 = 1.0;
+        let mut least: f64 = 1.5;
         while need > share && loosening < MAX_LOOSENING {
             too_tight = loosening;
             // Triangles go with the inverse of the tolerance, but for those that are there anyway.
-            loosening = (loosening * (need / share).max(1.5)).min(MAX_LOOSENING);
+            loosening = (loosening * (need / share).max(least)).min(MAX_LOOSENING);
+            // What is there anyway may be more than a share: ten looks at it are enough, not a thousand.
+            least *= least;
             self.objects[object].loosening = loosening;
             need = needed(self, object);
         }
