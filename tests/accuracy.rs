@@ -263,6 +263,7 @@ fn larger_singular_value(squares: &Big, product: &Big) -> Big {
 fn stretching_at_a_point_is_bounded_by_little_more() {
     let mut axis = Worst::new("bound of the stretching, motion along an axis");
     let mut anywhere = Worst::new("bound of the stretching, any motion");
+    let mut itself = Worst::new("stretching");
     for_each_case(|case, _| {
         let map = PhotosurfaceMap::new(&case.velocity);
         let exact = stretch(&case.velocity, case.offset);
@@ -278,9 +279,12 @@ fn stretching_at_a_point_is_bounded_by_little_more() {
         worst.record(oracle::error(bound, &exact), limit, size, || {
             case.describe()
         });
+        let error = oracle::error(map.stretch_at(case.offset), &exact);
+        itself.record(error, RELATIVE * size, size, || case.describe());
     });
     axis.check();
     anywhere.check();
+    itself.check();
 }
 
 /// The largest stretching in a ball is where a line from the observer touches it on the side of the
@@ -332,6 +336,7 @@ fn stretching_in_a_ball_is_bounded_by_little_more() {
 #[test]
 fn stretching_is_bounded_by_little_more_at_extreme_rapidities() {
     let mut worst = Worst::new("bound of the stretching, extreme rapidity");
+    let mut itself = Worst::new("stretching, extreme rapidity");
     for rapidity in [30.0, 100.0, 200.0] {
         let velocity = Velocity::from_rapidity(rapidity, DVec3::NEG_Y).expect("valid");
         let map = PhotosurfaceMap::new(&velocity);
@@ -359,10 +364,15 @@ fn stretching_is_bounded_by_little_more_at_extreme_rapidities() {
                     size,
                     || format!("rapidity {rapidity}, offset {offset}"),
                 );
+                let error = oracle::error(map.stretch_at(offset), &exact);
+                itself.record(error, RELATIVE * size, size, || {
+                    format!("rapidity {rapidity}, offset {offset}")
+                });
             }
         }
     }
     worst.check();
+    itself.check();
 }
 
 /// Along an axis the rapidity makes no difference: as far as the digits of the oracle go.

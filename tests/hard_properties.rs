@@ -30,12 +30,17 @@ fn stage(mesh: &Mesh, place: DVec3, velocity: Velocity) -> Stage {
     Stage::new(scene, models)
 }
 
+/// Triangles a photosurface is refined to, about: at the tip of a cone of light a tolerance of 1e-3 takes as many as
+/// gamma, which is what a budget is for.
+const BUDGET: u64 = 400;
+
 /// The bytes of a file, or the one error.
-fn export(stage: &Stage, subdivide: bool) -> Result<Vec<u8>, WriteError> {
+fn export(stage: Stage, subdivide: bool) -> Result<Vec<u8>, WriteError> {
     let wanted = Wanted {
         subdivide,
         ..Wanted::default()
     };
+    let (stage, _) = stage.within_budget(wanted, BUDGET);
     let photosurfaces: Vec<_> = stage.photosurfaces(0, wanted).collect();
     let scene = stage.facts();
     let export = Export {
@@ -102,7 +107,7 @@ fn ten_thousand_files_are_finite_or_one_clear_error() {
     ];
     let distances = [
         0.0, 1e-300, 1e-150, 1e-40, 1e-20, 1e-9, 1e-3, 0.1, 0.5, 1.0, 2.0, 10.0, 1e3, 1e9, 1e20,
-        1e36, 1e40, 1e50, 1e60, 1e74,
+        1e36, 1e40, 1e75, 1e155, 1e300,
     ];
     let (mut written, mut refused) = (0, 0);
     for rapidity in rapidities {
@@ -125,9 +130,9 @@ fn ten_thousand_files_are_finite_or_one_clear_error() {
                 };
                 let case = format!("rapidity {rapidity}, size {size}, {place}, {direction}");
                 let velocity = Velocity::from_rapidity(rapidity, direction).expect("valid");
-                // Refined now and then, and where that takes few triangles.
-                let subdivide = number == 3 && rapidity <= 3.0 && distance > 0.4;
-                match export(&stage(&mesh, place, velocity), subdivide) {
+                // Of the directions two are refined, at every rapidity and distance: a file takes as long as 50 others.
+                let subdivide = matches!(number, 3 | 9);
+                match export(stage(&mesh, place, velocity), subdivide) {
                     Ok(bytes) => {
                         assert_finite(&bytes, &case);
                         written += 1;
@@ -181,11 +186,9 @@ fn degenerate_triangles_make_finite_files() {
         for rapidity in [0.0, 1e-300, 1.0, 7.6, 40.0, 350.0] {
             for direction in [DVec3::X, DVec3::NEG_X, DVec3::new(1.0, 2.0, -3.0)] {
                 for subdivide in [false, true] {
-                    // At the tip of a cone of light a tolerance of 1e-3 takes as many triangles as gamma.
-                    let subdivide = subdivide && rapidity <= 3.0;
                     let velocity = Velocity::from_rapidity(rapidity, direction).expect("valid");
                     let case = format!("{name}, rapidity {rapidity}, {direction}");
-                    match export(&stage(&triangle(corners), o, velocity), subdivide) {
+                    match export(stage(&triangle(corners), o, velocity), subdivide) {
                         Ok(bytes) => assert_finite(&bytes, &case),
                         Err(WriteError::Range { .. } | WriteError::TooSmall { .. }) => {
                             assert!(rapidity > 7.6, "{case}: refused");
@@ -210,9 +213,10 @@ fn the_condition_is_the_largest_stretch_at_a_vertex() {
             .next()
             .expect("one part");
         let condition = made.facts.condition;
-        assert!(condition >= expected, "{condition}");
-        // The rounding of an offset turns it by an epsilon, which counts gamma times behind.
-        assert!(condition <= expected * (1.0 + 1e-12) + 1e-9, "{condition}");
+        assert!(
+            (condition / expected - 1.0).abs() <= 4.0 * f64::EPSILON,
+            "{condition}"
+        );
     }
 }
 
@@ -220,7 +224,7 @@ fn the_condition_is_the_largest_stretch_at_a_vertex() {
 fn no_triangles_and_no_numbers_are_clear_errors() {
     for corners in [vec![], vec![DVec3::X]] {
         let empty = Mesh::new(corners, vec![]).expect("nothing wrong with it");
-        let error = export(&stage(&empty, DVec3::X, Velocity::ZERO), true).expect_err("empty");
+        let error = export(stage(&empty, DVec3::X, Velocity::ZERO), true).expect_err("empty");
         assert!(matches!(error, WriteError::Empty(_)), "{error}");
     }
     for bad in [f64::NAN, f64::INFINITY] {
@@ -279,6 +283,104 @@ fn the_command_takes_degenerate_files_or_says_why_not() {
     let run = workplace.run("export far.obj --rapidity 350 --observer 0,0,0 -o out2.glb");
     assert_eq!(run.status, 2, "{run}");
     assert!(!workplace.files().iter().any(|name| name == "out2.glb"));
+}
+
+/// A GLB of nothing but triangles, three corners each.
+fn glb(corners: &[[f32; 3]]) -> Vec<u8> {
+    let of_all = |axis: usize, choose: fn(f32, f32) -> f32| {
+        let numbers = corners.iter().map(|corner| corner[axis]);
+        numbers
+            .reduce(choose)
+            .filter(|number| number.is_finite())
+            .unwrap_or(0.0)
+    };
+    let (low, high) = (
+        [0, 1, 2].map(|axis| of_all(axis, f32::min)),
+        [0, 1, 2].map(|axis| of_all(axis, f32::max)),
+    );
+    let bytes: Vec<u8> = corners
+        .as_flattened()
+        .iter()
+        .flat_map(|number| number.to_le_bytes())
+        .collect();
+    let document = serde_json::json!({
+        "asset": { "version": "2.0" },
+        "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0, "name": "thing" }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
+        "accessors": [{
+            "bufferView": 0, "componentType": 5126, "count": corners.len(), "type": "VEC3",
+            "min": low, "max": high,
+        }],
+        "bufferViews": [{ "buffer": 0, "byteLength": bytes.len() }],
+        "buffers": [{ "byteLength": bytes.len() }],
+    });
+    let glb = gltf::binary::Glb {
+        header: gltf::binary::Header {
+            magic: *b"glTF",
+            version: 2,
+            length: 0,
+        },
+        json: document.to_string().into_bytes().into(),
+        bin: Some(bytes.into()),
+    };
+    glb.to_vec().expect("small enough")
+}
+
+#[test]
+fn the_command_takes_degenerate_binary_files_or_says_why_not() {
+    let workplace = Workplace::new();
+    let (a, b, c) = ([0.0, 0.0, -1.0], [1.0, 0.0, -1.0], [0.0, 1.0, -1.0]);
+    let largest = f32::MAX;
+    for (name, corners, error) in [
+        ("no_area.glb", vec![a, b, a, a, b, [2.0, 0.0, -1.0]], None),
+        ("doubled.glb", vec![a, b, c, a, b, c, c, b, a], None),
+        ("one_point.glb", vec![a, a, a], None),
+        ("at_the_observer.glb", vec![[0.0; 3], b, c], None),
+        (
+            "needle.glb",
+            vec![a, [1e-38, 0.0, -1.0], [0.0, 1e3, -1.0]],
+            None,
+        ),
+        (
+            "subnormal.glb",
+            vec![[1e-45, 0.0, 0.0], [0.0, 1e-45, 0.0], [0.0, 0.0, -1e-45]],
+            None,
+        ),
+        ("nan.glb", vec![a, [f32::NAN, 0.0, 0.0], c], Some("NaN")),
+        (
+            "infinite.glb",
+            vec![a, [f32::INFINITY, 0.0, 0.0], c],
+            Some("inf"),
+        ),
+        (
+            "far.glb",
+            vec![
+                [largest, 0.0, 0.0],
+                [0.0, largest, 0.0],
+                [0.0, 0.0, largest],
+            ],
+            Some("32-bit"),
+        ),
+    ] {
+        workplace.write(name, glb(&corners));
+        for speed in ["--beta 0.9", "--gamma 1e6", "--rapidity 40"] {
+            let run = workplace.run(&format!(
+                "export {name} {speed} --direction 1,2,-3 --observer 0,0,0 --max-triangles 1000 -o out.glb"
+            ));
+            if let Some(message) = error {
+                run.error(&[message]);
+                continue;
+            }
+            if run.status == 2 {
+                // Next to nothing stays next to nothing, unless it is stretched by gamma.
+                assert!(name == "subnormal.glb" && speed != "--rapidity 40", "{run}");
+                run.error(&["too small for the 32-bit numbers"]);
+                continue;
+            }
+            assert!(run.status == 0 || run.status == 1, "{run}");
+            assert_finite(&workplace.read("out.glb"), &format!("{name} {speed}"));
+        }
+    }
 }
 
 /// Numbers that hurt, of any size.
@@ -369,16 +471,15 @@ proptest! {
         time in nasty_number(),
         vertex in nasty_vector(),
     ) {
-        // The squares of these are numbers, so that every intermediate one is.
-        let tame = |x: f64| x.clamp(-1e100, 1e100);
-        let event = event.clamp(DVec3::splat(-1e100), DVec3::splat(1e100));
-        let vertex = vertex.clamp(DVec3::splat(-1e100), DVec3::splat(1e100));
-        let observer = WorldLine { origin: Event::new(tame(time), event), velocity: velocities.0 };
+        let observer = WorldLine { origin: Event::new(time, event), velocity: velocities.0 };
         let object = WorldLine { origin: Event::default(), velocity: velocities.1 };
         let view = View::new(&observer, &object, 0.0);
-        prop_assert!(view.observer_rest().is_finite());
+        prop_assert!(!view.observer_rest().is_nan());
         prop_assert!(!view.seen_position(vertex).is_nan());
-        prop_assert!(view.doppler_factor(vertex).is_finite());
+        // A place beyond f64 is in no direction.
+        if view.observer_rest().abs().max_element() < 1e308 && vertex.abs().max_element() < 1e307 {
+            prop_assert!(view.doppler_factor(vertex).is_finite());
+        }
     }
 
     /// Any vector is a velocity, or one clear error; the speed is that of the vector.
@@ -402,15 +503,13 @@ proptest! {
         velocity in nasty_velocity(),
     ) {
         let wanted = Wanted { precision: Precision::Double, subdivide: false, ..Wanted::default() };
-        // What a file may have.
-        let corners = corners.map(|corner| corner.clamp(DVec3::splat(-1e75), DVec3::splat(1e75)));
         let stage = stage(&triangle(corners), DVec3::ZERO, velocity);
         let made = stage.photosurfaces(0, wanted).next().expect("one part");
         for position in made.mesh.positions() {
             prop_assert!(!position.is_nan(), "{position}");
         }
         prop_assert!(made.facts.condition >= 1.0 && made.facts.condition.is_finite());
-        match export(&stage, false) {
+        match export(stage, false) {
             Ok(bytes) => assert_finite(&bytes, "any triangle"),
             Err(error) => prop_assert!(
                 matches!(error, WriteError::Range { .. } | WriteError::Overflow { .. } | WriteError::TooSmall { .. }),

@@ -2,7 +2,14 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::command::{Workplace, glb_json};
+use common::refining::model;
+use photosurface::{
+    DVec3, Event, Lorentz, Mesh, Object, Observer, PhotosurfaceMap, Scene, Source, Stage, Velocity,
+    View, Wanted, WorldLine, load_models,
+};
 use serde_json::json;
 
 /// The header of a PNG, which is all of it that is looked at.
@@ -290,4 +297,114 @@ fn a_face_seen_edge_on_is_refined_like_any_other() {
             ))
             .success();
     }
+}
+
+/// A normal was multiplied by `exp(eta)` before it was brought to unit length: a long one became infinite, and that has
+/// no direction, so the normal was zero.
+#[test]
+fn long_normals_of_fast_things_are_not_zero() {
+    let velocity = Velocity::from_rapidity(350.0, DVec3::X).unwrap();
+    let map = PhotosurfaceMap::new(&velocity);
+    let normal = DVec3::new(0.6, 0.8, 0.0);
+    let expected = map.seen_normal(DVec3::Y, normal);
+    assert!((expected.length() - 1.0).abs() < 1e-15);
+    for length in [1e-200, 1e200, 1e300] {
+        let found = map.seen_normal(DVec3::Y, normal * length);
+        assert!((found - expected).length() < 1e-15, "{length}: {found}");
+    }
+}
+
+/// What is seen beyond the range of `f64` was infinite until the axes were turned: zero times infinity in a product
+/// with a rotation is NaN.
+#[test]
+fn what_is_seen_infinitely_far_off_is_not_nan() {
+    let moving = |rapidity, direction| WorldLine {
+        origin: Event::default(),
+        velocity: Velocity::from_rapidity(rapidity, direction).unwrap(),
+    };
+    let view = View::new(&moving(300.0, DVec3::X), &moving(2.0, DVec3::Y), 0.0);
+    assert!(view.relative_velocity().rapidity() > 300.0);
+    for far in [DVec3::X, DVec3::ONE, DVec3::new(1.0, -1.0, 0.0)] {
+        let seen = view.seen_position(far * 1e300);
+        assert!(!seen.is_nan(), "{seen}");
+        assert!(seen.abs().max_element() == f64::INFINITY, "{seen}");
+    }
+}
+
+/// Of two tiny rapidities across each other the squares vanished, and with them the velocity.
+#[test]
+fn two_tiny_velocities_are_not_rest() {
+    let [first, second] = [(3e-200, DVec3::X), (4e-200, DVec3::Y)]
+        .map(|(eta, n)| Lorentz::boost(Velocity::from_rapidity(eta, n).unwrap()));
+    let boost = first.then(&second).boost_velocity();
+    assert!((boost.rapidity() / 5e-200 - 1.0).abs() < 1e-15, "{boost:?}");
+    assert!(
+        (boost.direction() - DVec3::new(0.6, 0.8, 0.0)).length() < 1e-15,
+        "{boost:?}"
+    );
+}
+
+/// The squares of such distances are infinite. The fewest triangles that theory allows, which every certificate tells,
+/// are an integral that halves a triangle until it is small against its distance: infinity minus infinity is
+/// never small, and what was meant to end after 60 halvings was halved 2^60 times.
+#[test]
+fn coordinates_of_any_size_do_not_halve_for_ever() {
+    for size in [1e-300, 1e150, 1e200, 1e300, f64::MAX] {
+        let corners = [
+            DVec3::new(-1.0, -1.0, 0.1),
+            DVec3::new(1.0, -1.0, 0.1),
+            DVec3::new(0.0, 1.0, 0.1),
+        ];
+        let mesh = Mesh::new(
+            corners.map(|corner| corner * size).to_vec(),
+            vec![[0, 1, 2]],
+        )
+        .unwrap();
+        let source = Source::Model(Arc::new(model(&[mesh])));
+        let observer = Observer {
+            velocity: Velocity::from_beta(0.5, DVec3::X).unwrap(),
+            ..Observer::default()
+        };
+        let scene = Scene::new(observer, vec![Object::new("triangle", source)]).unwrap();
+        let (models, _) = load_models(&scene, ".".as_ref()).unwrap();
+        let wanted = Wanted {
+            subdivide: false,
+            ..Wanted::default()
+        };
+        let made = Stage::new(scene, models)
+            .photosurfaces(0, wanted)
+            .next()
+            .unwrap();
+        assert!(made.facts.certificate.minimum_triangles >= 1.0, "{size}");
+    }
+}
+
+/// Offsets too large for their squares are made smaller first, which an infinite one never is: the stack was full. And
+/// infinities in the sum that is the observer's place left NaN of it.
+#[test]
+fn infinite_offsets_are_not_made_smaller_for_ever() {
+    let velocity = Velocity::from_beta(0.5, DVec3::X).unwrap();
+    let map = PhotosurfaceMap::new(&velocity);
+    let far = DVec3::new(f64::INFINITY, 1.0, 0.0);
+    assert!(!map.seen_position(far).is_finite());
+    assert!(map.stretch_bound(far, 1.0) >= velocity.stretch());
+    let at = |x| WorldLine {
+        origin: Event::new(x, DVec3::new(x, -x, 0.0)),
+        velocity,
+    };
+    let view = View::new(&at(f64::MAX), &at(f64::MIN), 1.0);
+    assert_eq!(view.observer_rest(), DVec3::INFINITY);
+    assert_eq!(view.seen_position(DVec3::X), DVec3::INFINITY);
+}
+
+/// A budget below what a round shape has at its coarsest is not to be had by any tolerance. All of them up to 1e300 times
+/// as loose were tried, each half as loose again as the one before: 1700 predictions of a second each.
+#[test]
+fn a_budget_that_nothing_fits_is_given_up_soon() {
+    let workplace = Workplace::new();
+    let run = workplace.run(
+        "export --rapidity 40 --direction=0,0,1 --observer 0,0,3 --time 0 --max-triangles 1 -o out.glb",
+    );
+    assert_eq!(run.status, 1, "{run}");
+    assert!(workplace.files().contains(&"out.glb".to_owned()));
 }

@@ -221,9 +221,49 @@ impl PhotosurfaceMap {
             return everywhere;
         }
         let (c, s) = half_angle.sin_cos();
+        (self.larger_singular_value(c, s) * (1.0 + 16.0 * f64::EPSILON)).min(everywhere)
+    }
+
+    /// The largest singular value of [`PhotosurfaceMap::jacobian`]: how many times a small error of an offset is
+    /// magnified, at most. From 1 straight behind the observer to `exp(eta)` straight ahead and at the observer.
+    ///
+    /// # Accuracy
+    ///
+    /// A few units in the last place at any rapidity, never above [`PhotosurfaceMap::stretch_bound`]
+    /// (`tests/accuracy.rs`).
+    pub fn stretch_at(&self, offset_rest: DVec3) -> f64 {
+        self.stretch_toward(self.forwardness(offset_rest))
+    }
+
+    /// The cotangent of half the angle from the direction of motion, `sqrt(w / u)`: what grows with the stretch, and
+    /// takes less to compute. Infinite straight ahead and at the observer.
+    pub(crate) fn forwardness(&self, offset_rest: DVec3) -> f64 {
+        let (cone, _) = self.light_cone(offset_rest);
+        if cone.ahead || cone.larger == 0.0 {
+            1.0 / cone.ratio
+        } else {
+            cone.ratio
+        }
+    }
+
+    /// [`PhotosurfaceMap::stretch_at`] where [`PhotosurfaceMap::forwardness`] is this.
+    pub(crate) fn stretch_toward(&self, forwardness: f64) -> f64 {
+        let (c, s) = if forwardness <= 1.0 {
+            let s = forwardness.hypot(1.0).recip();
+            (forwardness * s, s)
+        } else {
+            let c = forwardness.recip().hypot(1.0).recip();
+            (c, c / forwardness)
+        };
+        self.larger_singular_value(c, s).clamp(1.0, self.stretch)
+    }
+
+    /// With the cosine and the sine of half the angle from the direction of motion: see
+    /// [`PhotosurfaceMap::stretch_bound`].
+    fn larger_singular_value(&self, c: f64, s: f64) -> f64 {
         let sum = (c * (self.stretch + 1.0)).hypot(s * (1.0 + self.squeeze));
         let difference = (c * (self.stretch - 1.0)).hypot(s * (1.0 - self.squeeze));
-        (0.5 * (sum + difference) * (1.0 + 16.0 * f64::EPSILON)).min(everywhere)
+        0.5 * (sum + difference)
     }
 
     /// The unit normal of the photosurface where the surface at rest has the normal `normal_rest`.
@@ -295,7 +335,8 @@ impl PhotosurfaceMap {
     ///
     /// Huge offsets are made smaller on the way; the second result is what makes up for that.
     fn light_cone(&self, offset: DVec3) -> (LightCone, f64) {
-        if offset.abs().max_element() > HUGE {
+        let largest = offset.abs().max_element();
+        if largest > HUGE && largest < f64::INFINITY {
             let (cone, _) = self.light_cone(offset / BACK);
             return (cone, BACK);
         }
@@ -403,6 +444,43 @@ mod tests {
                     assert!(
                         map.stretch_bound(offset, radius) >= all,
                         "{offset} {radius}"
+                    );
+                }
+            }
+        }
+    }
+
+    /// `s1 s2 = D` and `s1^2 + s2^2 = 2 + 2 n.a + |a|^2` of the plane of motion, where both have digits; the axes
+    /// and the observer in closed form; below the bound and close to it everywhere.
+    #[test]
+    fn the_stretch_at_a_place_is_the_larger_singular_value() {
+        for rapidity in [0.0, 1e-9, 0.7, 3.0, 20.0, 350.0] {
+            let direction = DVec3::new(1.0, 2.0, -3.0);
+            let map = observer(rapidity, direction);
+            assert_eq!(map.stretch_at(DVec3::ZERO), map.stretch);
+            assert_eq!(map.stretch_at(-direction), 1.0);
+            assert!((map.stretch_at(direction) / map.stretch - 1.0).abs() <= 2.0 * f64::EPSILON);
+            for step in 0..=200 {
+                let angle = f64::from(step) / 200.0 * std::f64::consts::PI;
+                let aside = map.direction.any_orthonormal_vector();
+                let offset = (map.direction * angle.cos() + aside * angle.sin()) * 7.0;
+                let (found, bound) = (map.stretch_at(offset), map.stretch_bound(offset, 0.0));
+                assert!(
+                    (1.0..=map.stretch).contains(&found),
+                    "{rapidity} {angle}: {found}"
+                );
+                assert!(found <= bound && bound <= found * (1.0 + 48.0 * f64::EPSILON));
+                if rapidity <= 3.0 {
+                    let a = map.direction * (map.gamma - 1.0)
+                        + offset / offset.length() * map.gamma_beta;
+                    let trace = 2.0 + 2.0 * map.direction.dot(a) + a.length_squared();
+                    let determinant = map.doppler_factor(offset);
+                    let expected = found * found + (determinant / found).powi(2);
+                    // Terms of gamma^2 cancel in the trace.
+                    let limit = 16.0 * f64::EPSILON * (2.0 + map.stretch * map.stretch);
+                    assert!(
+                        (trace - expected).abs() <= limit,
+                        "{rapidity} {angle}: {found}"
                     );
                 }
             }

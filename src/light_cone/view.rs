@@ -41,8 +41,14 @@ impl View {
         }
         .at(proper_time);
         let size = |event: Event| length(event.position).max(event.time.abs());
+        let place = origin.position + traveled.position;
         Self {
-            observer_rest: origin.position + traveled.position,
+            // Beyond f64, where infinities may have cancelled.
+            observer_rest: if place.is_finite() {
+                place
+            } else {
+                DVec3::INFINITY
+            },
             place_size: size(origin) + size(traveled),
             rest_to_observer,
             map: PhotosurfaceMap::new(&relative),
@@ -54,7 +60,7 @@ impl View {
         self.rest_to_observer.boost_velocity()
     }
 
-    /// The observer's place in the rest frame.
+    /// The observer's place in the rest frame; infinite where it is beyond `f64`.
     pub fn observer_rest(&self) -> DVec3 {
         self.observer_rest
     }
@@ -99,6 +105,16 @@ impl View {
         let offset = self.offset(position_rest);
         let rounding = f64::EPSILON * length(offset);
         self.map.stretch_bound(offset, radius + rounding)
+    }
+
+    /// What grows with the stretch at a point: see [`View::stretch_toward`].
+    pub(crate) fn forwardness(&self, position_rest: DVec3) -> f64 {
+        self.map.forwardness(self.offset(position_rest))
+    }
+
+    /// How many times a small error of a position is magnified, at most, where [`View::forwardness`] is this.
+    pub(crate) fn stretch_toward(&self, forwardness: f64) -> f64 {
+        self.map.stretch_toward(forwardness)
     }
 
     /// The time, in the observer's frame, at which the light seen now left the point; not positive.

@@ -61,9 +61,11 @@ pub(super) fn seen_mesh(view: &View, rest: &Mesh) -> Mesh {
     rest.with_geometry(positions, normals, tangents)
 }
 
-/// The largest stretch at a vertex.
+/// How many times, at most, a small error of a vertex is magnified.
 pub(super) fn condition(view: &View, rest: &Mesh) -> f64 {
     let jobs = rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
-    jobs.map(|&position| view.stretch_bound(position, 0.0))
-        .reduce(|| 1.0, f64::max)
+    let forwardness = jobs
+        .map(|&position| view.forwardness(position))
+        .reduce(|| 0.0, f64::max);
+    view.stretch_toward(forwardness)
 }

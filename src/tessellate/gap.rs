@@ -480,7 +480,7 @@ const fn two_to(n: i32) -> f64 {
 }
 
 /// The exponent of the largest component of a vector that is not zero.
-fn exponent(v: DVec3) -> i32 {
+pub(super) fn exponent(v: DVec3) -> i32 {
     let largest = v.abs().max_element();
     let of_normal = |x: f64| (x.to_bits() >> 52) as i32 - 1023;
     if largest < f64::MIN_POSITIVE {
@@ -491,7 +491,7 @@ fn exponent(v: DVec3) -> i32 {
 }
 
 /// `x 2^n`, exact unless the result is too small or too large for a normal number.
-fn times_two_to(x: f64, mut n: i32) -> f64 {
+pub(super) fn times_two_to(x: f64, mut n: i32) -> f64 {
     let mut x = x;
     while n < -1000 {
         x *= two_to(-1000);
@@ -504,7 +504,7 @@ fn times_two_to(x: f64, mut n: i32) -> f64 {
     x * two_to(n)
 }
 
-fn scaled(v: DVec3, n: i32) -> DVec3 {
+pub(super) fn scaled(v: DVec3, n: i32) -> DVec3 {
     DVec3::new(
         times_two_to(v.x, n),
         times_two_to(v.y, n),

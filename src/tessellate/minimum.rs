@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::edge::predicted_edge_pieces;
+use super::gap::{exponent, scaled, times_two_to};
 use super::{Allowance, triangle_gap};
 
 /// `1.5 sqrt(3)`: an equilateral triangle whose middle has the gap `e` has the area `1.5 sqrt(3) e` in the metric
@@ -29,15 +30,27 @@ const MAX_HALVINGS: u32 = 60;
 ///
 /// # Accuracy
 ///
-/// About three digits (quadrature of degree 2 on pieces smaller than half their distance).
-pub(crate) fn minimum_triangles([a, b, c]: [DVec3; 3], allowed: f64) -> f64 {
+/// About three digits (quadrature of degree 2 on pieces smaller than half their distance), for triangles of any size.
+/// Zero where a coordinate is not finite: of those nothing is known.
+pub(crate) fn minimum_triangles(offsets: [DVec3; 3], allowed: f64) -> f64 {
+    let largest = offsets.iter().fold(0.0, |largest: f64, offset| {
+        largest.max(offset.abs().max_element())
+    });
+    if !(largest > 0.0 && offsets.iter().all(|offset| offset.is_finite())) {
+        return 0.0;
+    }
+    // The integral goes with the size. Brought to unit size neither squares nor sums overflow, which would be halved
+    // for ever.
+    let exponent = exponent(DVec3::splat(largest));
+    let [a, b, c] = offsets.map(|offset| scaled(offset, -exponent));
     // h dA is the triple product over 2, whatever piece of the triangle is taken: 6 volumes.
     let twice_area = (b - a).cross(c - a);
     let height_times_twice_area = a.dot(twice_area).abs();
     if height_times_twice_area == 0.0 {
         return 0.0;
     }
-    0.5 * height_times_twice_area * mean_inverse_square([a, b, c], 0) / (AREA_OF_GAP * allowed)
+    let integral = 0.5 * height_times_twice_area * mean_inverse_square([a, b, c], 0);
+    times_two_to(integral / AREA_OF_GAP, exponent) / allowed
 }
 
 /// About how many triangles one will be divided into.
@@ -113,6 +126,32 @@ mod tests {
                 "{h}: {found} {expected}"
             );
         }
+    }
+
+    /// Squares of these overflowed, the sums of the largest too: NaN was halved 2^60 times.
+    #[test]
+    fn the_minimum_goes_with_the_size_of_a_triangle() {
+        let corners = [
+            DVec3::new(-0.9, -0.5, 0.25),
+            DVec3::new(0.9, -0.5, 0.25),
+            DVec3::new(0.0, 0.9, 0.5),
+        ];
+        let expected = minimum_triangles(corners, 1e-3);
+        for exponent in [-1000, -600, -200, 200, 600, 1023] {
+            let scale = 2f64.powi(exponent);
+            let found = minimum_triangles(corners.map(|corner| corner * scale), 1e-3 * scale);
+            assert_eq!(found, expected, "2^{exponent}");
+        }
+        let far = corners.map(|corner| corner * f64::MAX);
+        assert_eq!(minimum_triangles(far, 1e-3), f64::INFINITY);
+        assert_eq!(
+            minimum_triangles([DVec3::X, DVec3::Y, DVec3::INFINITY], 1e-3),
+            0.0
+        );
+        assert_eq!(
+            minimum_triangles([DVec3::X, DVec3::Y, DVec3::NAN], 1e-3),
+            0.0
+        );
     }
 
     #[test]

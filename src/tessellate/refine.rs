@@ -13,6 +13,10 @@ use crate::mesh::Mesh;
 /// A single triangle is never given more points than this many times what theory asks for, and a few.
 const MOST_POINTS: f64 = 16.0;
 
+/// More points than this inside one triangle are a tolerance that cannot be meant: behind a fast observer the fewest
+/// triangles that theory allows go with `gamma`.
+const MAX_POINTS: f64 = 4_194_304.0;
+
 /// A mesh refined, and how well.
 #[derive(Clone, Debug)]
 pub(crate) struct Refined {
@@ -227,7 +231,8 @@ fn outcome(
         }
     }
     let minimum = minimum_triangles([a, b, c], allowed);
-    let most_points = (MOST_POINTS * (minimum + points.len() as f64)) as usize + 64;
+    let most_points = MOST_POINTS * (minimum + points.len() as f64) + 64.0;
+    let most_points = most_points.min(MAX_POINTS) as usize;
     let pieces = divide(corner_positions, observer, &points, allowance, most_points);
     Outcome::Divided { boundary, pieces }
 }

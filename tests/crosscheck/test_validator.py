@@ -1,6 +1,7 @@
 """The Khronos validator finds no error and no warning in any kind of file that is written."""
 
 import json
+import math
 import os
 import subprocess
 from pathlib import Path
@@ -13,16 +14,27 @@ ERROR, WARNING = 0, 1
 SCRIPT = Path(__file__).with_name("validate.cjs")
 
 
+def reports_of(paths):
+    """The reports of the validator, one for each file."""
+    done = subprocess.run(["node", SCRIPT, *paths], capture_output=True, text=True, env=os.environ)
+    assert done.returncode == 0, done.stderr
+    reports = json.loads(done.stdout)
+    assert len(reports) == len(paths)
+    return reports
+
+
 def validate(path):
     """The messages of the validator: all of them, and its report."""
-    done = subprocess.run(["node", SCRIPT, path], capture_output=True, text=True, env=os.environ)
-    assert done.returncode == 0, done.stderr
-    report = json.loads(done.stdout)
+    [report] = reports_of([path])
     return report["issues"]["messages"], report
 
 
 def assert_valid(path):
-    messages, report = validate(path)
+    assert_clean(validate(path)[1])
+
+
+def assert_clean(report):
+    messages = report["issues"]["messages"]
     # Everything binary was there to be looked at.
     assert report["info"]["totalTriangleCount"] > 0
     assert not report["issues"]["truncated"]
@@ -86,6 +98,29 @@ def test_materials_and_textures_of_an_obj(to, export, tmp_path):
 
 def test_a_mesh_from_elsewhere(export, tmp_path):
     assert_valid(export(write_airplane(tmp_path), "--beta", "0.9"))
+
+
+@pytest.mark.parametrize("rapidity", [0, 1e-9, 0.5, 3, 7.6, 14.5, 19, 28, 40, 60])
+def test_hard_files(rapidity, export):
+    """Twelve files of each rapidity: the observer passes four things, near and far, small and large, and is in one.
+
+    Where they are at rest he is `time sinh(rapidity)` farther on: steps that shrink with `exp(-rapidity)` stay near.
+    """
+    places = {"in": [0, 0, 0], "ahead": [0, 0, -1e6], "behind": [0, 1e-9, 1e3], "aside": [30, 40, 1e-3]}
+    sizes = {"in": [2, 2, 2], "ahead": [1e3, 1, 1e-3], "behind": [1e-3, 1e-6, 1], "aside": [1, 0.5, 20]}
+    scene = {
+        "observer": {"velocity": {"rapidity": rapidity, "direction": [0.01, -0.02, -1]}},
+        "objects": [
+            {"name": name, "shape": {"box": {"size": sizes[name]}}, "position": place}
+            for name, place in places.items()
+        ],
+        "steps": [t * math.exp(-rapidity) for t in (-1e6, -1e3, -30, -3, -1, -1e-9, 0, 1e-9, 0.5, 7, 1e3, 1e6)],
+    }
+    first = export(scene, "--split", "--max-triangles", "20000", to="hard.glb", certified=None)
+    paths = sorted(first.parent.glob("*.glb"))
+    assert len(paths) == len(scene["steps"])
+    for report in reports_of(paths):
+        assert_clean(report)
 
 
 def test_the_validator_does_find_errors(export, tmp_path):
