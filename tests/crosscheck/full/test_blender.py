@@ -124,14 +124,15 @@ def test_facts_are_custom_properties(paths):
 
 def properties(owner):
     """The custom properties as JSON would have them."""
-    plain = {}
-    for key, value in owner.items():
-        if hasattr(value, "to_dict"):
-            value = value.to_dict()
-        elif hasattr(value, "to_list"):
-            value = value.to_list()
-        plain[key] = value
-    return plain
+    return {key: plain(value) for key, value in owner.items()}
+
+
+def plain(value):
+    if hasattr(value, "to_dict"):
+        return value.to_dict()
+    if hasattr(value, "to_list"):
+        return value.to_list()
+    return [plain(item) for item in value] if isinstance(value, list) else value
 
 
 def test_materials_are_those_of_the_file(paths):
