@@ -5,12 +5,12 @@
 
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index, accessor, animation};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::gltf::{Document, raw};
 use super::layer::{Layer, layers};
 use super::{Export, WriteError};
-use crate::photosurface::{Photosurface, step_label};
+use crate::photosurface::{Facts, Photosurface, step_label};
 
 impl Document {
     /// Shows each photosurface during the frame of its step alone. The nodes are all that there are so far, in the
@@ -64,12 +64,20 @@ impl Document {
             let name = name_of_part(&steps[0]);
             let meshes: Vec<_> = steps.iter().map(|step| &step.mesh).collect();
             let facts: Vec<_> = steps.iter().map(|step| &step.facts).collect();
-            let extras = json!({
+            // What the source says is that of all frames.
+            let frame = |facts: &&Facts| Facts {
+                source: None,
+                ..Facts::clone(facts)
+            };
+            let mut extras = json!({
                 "name": name,
                 "object": facts[0].object,
                 "part": facts[0].part,
-                "frames": facts,
+                "frames": facts.iter().map(frame).collect::<Vec<_>>(),
             });
+            if let Some(source) = &facts[0].source {
+                extras["source"] = Value::clone(source);
+            }
             let node = self.add(name, &meshes, first.material, &[], Some(raw(&extras)))?;
             let targets = steps.len() - 1;
             let names: Vec<_> = facts[1..]

@@ -89,6 +89,7 @@ def test_meshes_of_blender(from_blender, export):
         found = new.attributes["COLOR_0"] / 255
         assert abs(found[:, : colours.shape[1]] - colours).max() <= 0.5 / 255 + 2**-24
         assert numpy.ptp(found[:, :3]) == 1
+        assert new.json["extras"]["source"]["node"] == old.json["extras"]
 
 
 def test_pictures_of_blender(from_blender, export):
