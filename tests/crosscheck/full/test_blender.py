@@ -54,6 +54,7 @@ def test_meshes_are_those_of_the_file(paths):
         assert blender.triangles(found).tolist() == node.triangles.tolist()
 
 
+@pytest.mark.parametrize("paths", [kind for kind in KINDS if kind not in PLAYING], indirect=True)
 def test_places_are_those_of_the_file(paths):
     """Evaluated as for the viewport. Blender holds a translation in f32, and rounds no vertex."""
     for _, node, found in each_mesh(paths):
