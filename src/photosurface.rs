@@ -264,6 +264,7 @@ impl Stage {
             },
             object: object.name.clone(),
             part: surface.part.name.clone(),
+            source: surface.part.extras.clone(),
             step,
             proper_time: steps[step],
             relative_gamma: relative.gamma(),

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
+use serde_json::Value;
 
 use super::{Material, Mesh, MeshError};
 
@@ -15,6 +16,8 @@ pub struct Part {
     mesh: Mesh,
     /// What it is made of; shared by all parts made of the same.
     pub material: Option<Arc<Material>>,
+    /// What else the source says of it, which means nothing here: the `extras` of glTF, of the `node` and the `mesh`.
+    pub extras: Option<Arc<Value>>,
 }
 
 impl Part {
@@ -36,6 +39,7 @@ impl Part {
             name: name.into(),
             mesh,
             material,
+            extras: None,
         })
     }
 
@@ -55,6 +59,7 @@ impl Part {
             name: self.name.clone(),
             mesh,
             material: self.material.clone(),
+            extras: self.extras.clone(),
         }
     }
 

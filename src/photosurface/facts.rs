@@ -1,6 +1,9 @@
 //! What is said of scenes and photosurfaces in files and in the report.
 
-use serde::Serialize;
+use std::sync::Arc;
+
+use serde::{Serialize, Serializer};
+use serde_json::Value;
 
 use crate::scene::Scene;
 use crate::tessellate::Certificate;
@@ -14,6 +17,9 @@ pub struct Facts {
     pub object: String,
     /// The part of the object's model; empty where there is only one and it has no name.
     pub part: String,
+    /// What else the source says of the part, as it says it.
+    #[serde(skip_serializing_if = "Option::is_none", serialize_with = "as_it_is")]
+    pub source: Option<Arc<Value>>,
     /// Which step, from 0.
     pub step: usize,
     /// Proper time of the observer at this step, from the observation event.
@@ -32,6 +38,10 @@ pub struct Facts {
     pub condition: f64,
     /// How far it is from the true photosurface.
     pub certificate: Certificate,
+}
+
+fn as_it_is<S: Serializer>(source: &Option<Arc<Value>>, serializer: S) -> Result<S::Ok, S::Error> {
+    source.as_deref().serialize(serializer)
 }
 
 /// What the scene is, in words and numbers: the same in files and in the report.

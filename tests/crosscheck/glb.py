@@ -24,6 +24,7 @@ class Node:
     translation: numpy.ndarray  # f64, as in the JSON
     attributes: dict  # name to array, as in the binary part
     triangles: numpy.ndarray
+    targets: list  # of each morph target the arrays to be added, by name
     material: dict | None
 
     @property
@@ -40,6 +41,19 @@ class Node:
         """The positions in the observer's frame, f64."""
         return self.translation + self.positions.astype(numpy.float64)
 
+    def at_step(self, step):
+        """The positions that the node is to show at a step of an animation; None for nothing.
+
+        That of the extras, not of the animation: what has no step is there always.
+        """
+        extras = self.json.get("extras", {})
+        if "frames" in extras:
+            local = self.positions.astype(numpy.float64)
+            if step > 0:
+                local += self.targets[step - 1]["POSITION"]
+            return self.translation + local
+        return self.world if extras.get("step", step) == step else None
+
 
 class Gltf:
     def __init__(self, path):
@@ -52,6 +66,11 @@ class Gltf:
             (buffer,) = self.json["buffers"]
             self._buffer = (path.parent / buffer["uri"]).read_bytes()
         self.nodes = [self._node(node) for node in self.json["nodes"]]
+
+    def at_step(self, step):
+        """Everything that is to be seen at a step of an animation: positions in the observer's frame, by name."""
+        places = {node.name: node.at_step(step) for node in self.nodes}
+        return {name: found for name, found in places.items() if found is not None}
 
     def accessor(self, index):
         spec = self.json["accessors"][index]
@@ -79,6 +98,9 @@ class Gltf:
             translation=numpy.array(node.get("translation", [0, 0, 0]), dtype=numpy.float64),
             attributes={n: self.accessor(i) for n, i in primitive["attributes"].items()},
             triangles=self.accessor(primitive["indices"]).reshape(-1, 3),
+            targets=[
+                {n: self.accessor(i) for n, i in target.items()} for target in primitive.get("targets", [])
+            ],
             material=self.json["materials"][primitive["material"]] if "material" in primitive else None,
         )
 

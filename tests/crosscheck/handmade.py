@@ -96,7 +96,7 @@ def write_hierarchy(directory):
         nodes=[
             # A quarter turn about y.
             {"name": "stand", "rotation": [0, 0.5**0.5, 0, 0.5**0.5], "children": [1, 2, 3]},
-            {"name": "left", "mesh": 0, "translation": [-3, 0, 0]},
+            {"name": "left", "mesh": 0, "translation": [-3, 0, 0], "extras": {"price": 2.5, "maker": "nobody"}},
             {"name": "right", "mesh": 0, "translation": [3, 0, 1], "scale": [1, 2, 1]},
             {"name": "frame", "mesh": 1, "translation": [0, -2, 0]},
         ],

@@ -21,15 +21,31 @@ def split(source):
     return files
 
 
-def mesh(write, *, to="out.glb"):
-    """A mesh from a file of another program, flown by twice; `write` makes the file in a directory."""
+def mesh(write, *flags, steps=(0, 1), to="out.glb"):
+    """A mesh from a file of another program, flown by; `write` makes the file in a directory."""
 
     def files(export, directory):
         spec = {"name": "thing", "file": str(write(directory)), "position": [0.5, 0, -5], "scale": 0.5}
         observer = {"velocity": [0, 0, -0.9]}
-        return [export({"observer": observer, "objects": [spec], "steps": [0, 1]}, to=to)]
+        return [export({"observer": observer, "objects": [spec], "steps": list(steps)}, *flags, to=to)]
 
     return files
+
+
+# The observer passes in seven steps, of which the first is not at the beginning of time.
+PASSING = {**SPHERE, "observer": {**SPHERE["observer"], "marker": 0.2}, "steps": [-6, -4, -2, 0, 2, 4, 6]}
+FRAMES_PER_SECOND = 24
+
+# Kinds that play seven steps.
+PLAYING = {
+    f"{name} as {words}": kind(flag)
+    for flag, words in [("--animate", "frames"), ("--animate=morph", "morph targets")]
+    for name, kind in {
+        "steps": lambda flag: scene(PASSING, flag),
+        "a hierarchy with a texture": lambda flag: mesh(write_hierarchy, flag, steps=range(7)),
+        "an OBJ with materials": lambda flag: mesh(write_obj, flag, steps=range(7)),
+    }.items()
+}
 
 
 KINDS = {
@@ -42,4 +58,6 @@ KINDS = {
     "hierarchy with a texture": mesh(write_hierarchy),
     "materials of an OBJ": mesh(write_obj),
     "materials of an OBJ beside a buffer of its own": mesh(write_obj, to="out.gltf"),
+    "attributes": scene(PASSING, "--attributes", "doppler,emission_time,rest_position"),
+    **PLAYING,
 }

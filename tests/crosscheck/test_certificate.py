@@ -161,14 +161,21 @@ def assert_the_view_is_the_oracles(view, many, points, seen):
     assert abs(back - points[sample]).max() <= 2**-24 * max(limits)
 
 
-def measure(scene, surface, path, unit):
-    """The largest distances: of true points from the mesh, of points of the mesh from the true surface."""
+def view_at(scene, step):
+    """The oracle's view of the only object."""
     (spec,) = scene["objects"]
-    view = View(Observer.of_scene(scene), Source.of_object(spec))
+    proper_time = scene.get("steps", [0])[step]
+    return View(Observer.of_scene(scene).after(proper_time), Source.of_object(spec))
+
+
+def measure(scene, surface, path, unit, step=0):
+    """The largest distances: of true points from the mesh, of points of the mesh from the true surface."""
+    view = view_at(scene, step)
     many = ManyPoints(view)
     random = numpy.random.default_rng(3)
     (node,) = glb.Gltf(path).nodes
-    triangles = node.world[node.triangles]
+    places = node.at_step(step)
+    triangles = places[node.triangles]
 
     points = surface.random(POINTS, random)
     seen = many.seen(points.astype(numpy.longdouble))
@@ -177,7 +184,7 @@ def measure(scene, surface, path, unit):
     missing = distances(Triangles(triangles).nearest(seen), seen, unit).max()
 
     found, chosen, weights = random_on_triangles(triangles, POINTS, random)
-    at_rest = many.at_rest(node.world).astype(float)[node.triangles]
+    at_rest = many.at_rest(places).astype(float)[node.triangles]
     near_surface = (weights[:, :, None] * at_rest[chosen]).sum(axis=1)
     on_surface = surface.nearest(near_surface)
     true = many.seen(on_surface.astype(numpy.longdouble)).astype(float)
@@ -378,6 +385,52 @@ def test_of_a_turned_and_stretched_box_that_moves_too(export):
     (certificate,) = certificates(path)
     print(measured, certificate["total"])
     assert max(measured) <= certificate["total"]
+
+
+# Past the observer, with the step of the case above in between.
+MORPH_STEPS = [-1.5, 0, 0.75]
+MORPHING = ["sphere, near", "sphere, by angle", "cylinder, near", "torus, near", "cube, near", "cube, in a face"]
+MORPHING += ["lattice, near", "airplane, near"]
+
+
+@pytest.mark.parametrize("name", MORPHING)
+def test_one_mesh_for_all_steps_is_within_the_bound_of_each(name, airplane, export):
+    """Base and target of a morphing mesh, asked the same two questions at every step."""
+    scene, tolerance, surface = case(name, airplane, export)
+    scene = {**scene, "steps": MORPH_STEPS}
+    path = export(scene, "--tolerance", tolerance, "--animate=morph")
+    (node,) = glb.Gltf(path).nodes
+    assert [frame["proper_time"] for frame in node.extras["frames"]] == MORPH_STEPS
+    reported = json.loads((path.parent / "report.json").read_text())["objects"]
+    assert reported == node.extras["frames"]
+    for step, facts in enumerate(node.extras["frames"]):
+        certificate = facts["certificate"]
+        measured = measure(scene, surface, path, certificate["unit"], step)
+        print(f"{name} {step}: {measured[0]:.3e} {measured[1]:.3e} of {certificate['total']:.3e}")
+        assert max(measured) <= certificate["total"]
+
+
+@pytest.mark.parametrize("name", MORPHING)
+def test_a_vertex_that_morphs_stays_the_same_point_at_rest(name, airplane, export):
+    """Where the first step has it says which point it is; the oracle says where that is seen at the others."""
+    scene, tolerance, _ = case(name, airplane, export)
+    scene = {**scene, "steps": MORPH_STEPS}
+    (node,) = glb.Gltf(export(scene, "--tolerance", tolerance, "--animate=morph")).nodes
+    at_rest = ManyPoints(view_at(scene, 0)).at_rest(node.at_step(0))
+    # Base and target are rounded, each of three coordinates.
+    largest = max(abs(values).max() for values in [node.positions, *(t["POSITION"] for t in node.targets)])
+    rounding = 2**-24 * 2 * 3**0.5 * largest
+    for step in range(1, 3):
+        view = view_at(scene, step)
+        # To rest and back an error grows by exp(rapidity) each way at most.
+        stretch = float(2 * view.relative_gamma()) ** 2
+        limit = (1 + stretch) * rounding
+        places = node.at_step(step)
+        assert abs(ManyPoints(view).seen(at_rest) - places).max() <= limit
+        for vertex in numpy.linspace(0, len(places) - 1, 20).astype(int):
+            point = [mpf(str(x)) for x in at_rest[vertex]]
+            seen = view.seen(view.source.placed(point))
+            assert all(abs(s - mpf(p)) <= limit for s, p in zip(seen, places[vertex].tolist(), strict=True))
 
 
 @pytest.mark.parametrize("name", ["sphere", "cube", "lattice", "street", "snapshot"])

@@ -12,7 +12,7 @@ from PIL import Image
 
 import glb
 import handmade
-from kinds import KINDS
+from kinds import FRAMES_PER_SECOND, KINDS, PLAYING
 
 SCRIPT = Path(__file__).with_name("three.cjs")
 
@@ -88,8 +88,9 @@ def test_facts_are_user_data(read):
         (scene,) = document.json["scenes"]
         assert answer["scene"] == scene.get("extras", {})
     for _, node, mesh in each_mesh(read):
-        # three.js adds the name itself.
-        assert mesh["extras"] == node.json.get("extras", {}) | {"name": node.name}
+        # three.js adds the name itself, and what is known of the mesh.
+        extras = node.mesh.get("extras", {}) | node.json.get("extras", {})
+        assert mesh["extras"] == extras | {"name": node.name}
 
 
 def test_materials(read):
@@ -145,6 +146,25 @@ def assert_animations_arrive(document, answer):
             assert track["interpolation"] == sampler.get("interpolation", "LINEAR")
             assert track["times"] == document.accessor(sampler["input"]).tolist()
             assert track["values"] == document.accessor(sampler["output"]).ravel().tolist()
+
+
+@pytest.mark.parametrize("kind", PLAYING)
+def test_each_frame_shows_its_step(kind, export, tmp_path):
+    """To the last bit; and a mesh for each step stays until the next."""
+    (path,) = PLAYING[kind](export, tmp_path)
+    document = glb.Gltf(path)
+    morphs = any(node.targets for node in document.nodes)
+    # Seconds as an f32 holds them: 1 / 24 is none.
+    times = [float(numpy.float32(step / FRAMES_PER_SECOND)) for step in range(7)]
+    parts = [0] if morphs else [0, 0.9]
+    times = [time + part / FRAMES_PER_SECOND for time in times for part in parts]
+    poses = ask(path, *times)["poses"]
+    for index, pose in enumerate(poses):
+        expected = document.at_step(index // len(parts))
+        found = shown(pose["meshes"])
+        assert found.keys() == expected.keys()
+        for name, places in expected.items():
+            assert found[name].tolist() == places.tolist(), (index, name)
 
 
 # What the questions about animations rest on: files made by hand, the poses of which are known.

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from kinds import KINDS
 from scenes import CUBE, SEVERAL, SPHERE, TORUS, write_airplane, write_obj
 
 ERROR, WARNING = 0, 1
@@ -52,10 +53,9 @@ def test_scenes(scene, to, export):
     assert_valid(export(scene, to=to))
 
 
-def test_one_file_per_step(export):
-    paths = list(export(SPHERE, "--split", to="split.glb").parent.glob("*.glb"))
-    assert len(paths) == len(SPHERE["steps"])
-    for path in paths:
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind(kind, export, tmp_path):
+    for path in KINDS[kind](export, tmp_path):
         assert_valid(path)
 
 

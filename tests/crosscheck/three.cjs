@@ -104,12 +104,13 @@ async function main([file, ...times]) {
   };
   if (times.length > 0) {
     const mixer = new THREE.AnimationMixer(gltf.scene);
-    for (const clip of gltf.animations) {
+    const actions = gltf.animations.map((clip) => {
       const action = mixer.clipAction(clip).setLoop(THREE.LoopOnce);
       action.clampWhenFinished = true; // the last moment belongs to it
-      action.play();
-    }
+      return action.play();
+    });
     for (const time of times.map(Number)) {
+      actions.forEach((action) => action.reset()); // one that has ended stands still
       mixer.setTime(time);
       answer.poses.push({ time, meshes: pose() });
     }

@@ -4,8 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::DAffine3;
-use gltf::json::Root;
 use gltf::json::mesh::{Mode, Semantic};
+use gltf::json::{Extras, Root};
+use serde_json::{Map, Value};
 
 use super::deform::{apply_morph, apply_skin, joint_transforms, morph_weights};
 use super::document::{Document, read_document};
@@ -48,12 +49,15 @@ pub fn read_gltf_bytes(bytes: &[u8], folder: &Path) -> Result<(Model, Findings),
         let material = |piece: &Piece| piece.material.as_ref()?.name().map(str::to_owned);
         let made_of: Vec<Option<String>> = pieces.iter().map(material).collect();
         let names = tell_apart(&node_name(&document.root, node), &made_of);
+        let extras = extras(&document.root, node);
         for (piece, name) in pieces.into_iter().zip(names) {
             let part = Part::new(name, piece.mesh, piece.material);
-            parts.push(part.map_err(|problem| ReadError::Mesh {
+            let mut part = part.map_err(|problem| ReadError::Mesh {
                 place: piece.place,
                 problem,
-            })?);
+            })?;
+            part.extras.clone_from(&extras);
+            parts.push(part);
         }
     }
     if parts.is_empty() {
@@ -87,27 +91,35 @@ fn note_other_content(document: &Document, notes: &mut Vec<Note>) {
             add_note(notes, Note::NotCarried { what });
         }
     }
-    // What this program writes there, it makes anew.
+    let empty = root.nodes.iter().filter(|node| node.mesh.is_none());
+    let count = empty.filter(|node| node.extras.is_some()).count();
+    if count > 0 {
+        let what = format!("extras of {} without a mesh", plural(count, "node"));
+        add_note(notes, Note::NotCarried { what });
+    }
+}
+
+/// What the file says of a node and its mesh beyond glTF.
+fn extras(root: &Root, node: usize) -> Option<Arc<Value>> {
+    let node = &root.nodes[node];
+    let value = |extras: &Extras| -> Option<Value> {
+        let text = extras.as_ref()?.get();
+        Some(serde_json::from_str(text).expect("it was read as a part of the file"))
+    };
+    let of_node = value(&node.extras);
+    // What this program writes there it makes anew; what it had from elsewhere goes on.
     let generator = root.asset.generator.as_deref().unwrap_or_default();
     if generator.starts_with(concat!(env!("CARGO_PKG_NAME"), " ")) {
-        return;
+        return of_node?.get("source").cloned().map(Arc::new);
     }
-    let with_extras = [
-        (
-            root.nodes.iter().filter(|n| n.extras.is_some()).count(),
-            "node",
-        ),
-        (
-            root.meshes.iter().filter(|m| m.extras.is_some()).count(),
-            "mesh",
-        ),
-    ];
-    for (count, singular) in with_extras {
-        if count > 0 {
-            let what = format!("extras of {}", plural(count, singular));
-            add_note(notes, Note::NotCarried { what });
-        }
-    }
+    let of_mesh = node
+        .mesh
+        .and_then(|mesh| value(&root.meshes[mesh.value()].extras));
+    let both = [("node", of_node), ("mesh", of_mesh)].into_iter();
+    let both: Map<_, _> = both
+        .filter_map(|(name, extras)| Some((name.to_owned(), extras?)))
+        .collect();
+    (!both.is_empty()).then(|| Arc::new(Value::Object(both)))
 }
 
 /// The meshes that one node draws, without its children.

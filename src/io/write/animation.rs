@@ -8,12 +8,12 @@ use std::io::Write;
 
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index, accessor, animation};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::WriteError;
 use super::gltf::GltfFile;
 use super::layer::Layer;
-use crate::photosurface::{Photosurface, step_label};
+use crate::photosurface::{Facts, Photosurface, step_label};
 
 /// What the one animation of a file is made of.
 #[derive(Default)]
@@ -74,13 +74,20 @@ impl<W: Write> GltfFile<'_, W> {
         };
         let name = name_of_part(first);
         let meshes: Vec<_> = steps.iter().map(|step| &step.mesh).collect();
-        let facts: Vec<_> = steps.iter().map(|step| &step.facts).collect();
-        let extras = json!({
+        // What the source says is that of all frames.
+        let frame = |step: &Photosurface| Facts {
+            source: None,
+            ..step.facts.clone()
+        };
+        let mut extras = json!({
             "name": name,
             "object": first.facts.object,
             "part": first.facts.part,
-            "frames": facts,
+            "frames": steps.iter().map(frame).collect::<Vec<_>>(),
         });
+        if let Some(source) = &first.facts.source {
+            extras["source"] = Value::clone(source);
+        }
         let material = Layer::from(first).material;
         let node = self.add_node(name, &meshes, material, &[], Some(extras))?;
         let Some(playback) = self.playback() else {

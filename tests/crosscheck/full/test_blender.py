@@ -10,7 +10,7 @@ from PIL import Image
 import blender
 import glb
 import handmade
-from kinds import KINDS
+from kinds import FRAMES_PER_SECOND, KINDS, PLAYING
 from scenes import CUBE
 
 
@@ -54,11 +54,33 @@ def test_meshes_are_those_of_the_file(paths):
         assert blender.triangles(found).tolist() == node.triangles.tolist()
 
 
+@pytest.mark.parametrize("paths", [kind for kind in KINDS if kind not in PLAYING], indirect=True)
 def test_places_are_those_of_the_file(paths):
     """Evaluated as for the viewport. Blender holds a translation in f32, and rounds no vertex."""
     for _, node, found in each_mesh(paths):
         error = abs(blender.places(found) - node.world)
         assert (error <= 2**-24 * abs(node.translation) + 2**-52 * abs(node.world)).all()
+
+
+@pytest.mark.parametrize("kind", PLAYING)
+def test_each_frame_shows_its_step(kind, export, tmp_path):
+    """As the dependency graph has it; a mesh for each step stays until the next."""
+    (path,) = PLAYING[kind](export, tmp_path)
+    document = glb.Gltf(path)
+    objects = blender.open_file(path)
+    for step in range(7):
+        expected = document.at_step(step)
+        for part in [0] if any(node.targets for node in document.nodes) else [0, 0.5]:
+            found = blender.shown(objects, (step + part) / FRAMES_PER_SECOND)
+            assert found.keys() == expected.keys()
+            for name, places in expected.items():
+                (node,) = [node for node in document.nodes if node.name == name]
+                # The translation in f32; of shape keys the sum, its difference from the base, and both together.
+                local = numpy.abs([node.positions, *(t["POSITION"] for t in node.targets)]).max(axis=0)
+                limit = 2**-24 * abs(node.translation) + 2**-52 * abs(places)
+                if node.targets:
+                    limit = limit + 2**-24 * 8 * local
+                assert (abs(found[name] - places) <= limit).all(), (step, part, name)
 
 
 def test_normals_are_those_of_the_file(paths):
@@ -103,14 +125,15 @@ def test_facts_are_custom_properties(paths):
 
 def properties(owner):
     """The custom properties as JSON would have them."""
-    plain = {}
-    for key, value in owner.items():
-        if hasattr(value, "to_dict"):
-            value = value.to_dict()
-        elif hasattr(value, "to_list"):
-            value = value.to_list()
-        plain[key] = value
-    return plain
+    return {key: plain(value) for key, value in owner.items()}
+
+
+def plain(value):
+    if hasattr(value, "to_dict"):
+        return value.to_dict()
+    if hasattr(value, "to_list"):
+        return value.to_list()
+    return [plain(item) for item in value] if isinstance(value, list) else value
 
 
 def test_materials_are_those_of_the_file(paths):
@@ -190,6 +213,40 @@ def test_a_picture_shows_what_is_shown(engine, flyby, tmp_path):
     colours = everything[visible][:, :3]
     assert colours.max() > 0.5
     assert len(numpy.unique(colours.round(1), axis=0)) > 5
+
+
+@pytest.mark.parametrize("kind", PLAYING)
+def test_pictures_of_frames_show_their_steps(kind, export, tmp_path):
+    """What is drawn at a frame fills the box around that step's vertices, to a pixel and a half."""
+    (path,) = PLAYING[kind](export, tmp_path)
+    document = glb.Gltf(path)
+    objects = blender.open_file(path)
+    things = [name for name in objects if name != "observer"]
+    blender.show_only(objects, things)
+    steps = [document.at_step(step) for step in range(7)]
+    steps = [numpy.concatenate([step[name] for name in things if name in step]) for step in steps]
+    # Along no axis, for some of these meshes are flat.
+    width, height = 800, 600
+    every = numpy.concatenate(steps)
+    middle = (every.min(axis=0) + every.max(axis=0)) / 2
+    extent = 2.1 * numpy.linalg.norm(every - middle, axis=1).max()
+    forward = numpy.array([-1, -0.5, -2]) / 5.25**0.5
+    seen = blender.camera(middle - 100 * forward, forward, width=extent)
+    blender.light()
+    blender.bpy.context.view_layer.update()
+    axes = numpy.array(seen.matrix_world.to_3x3()).T[:2]
+    pixel = extent / width
+    boxes = []
+    for step, places in enumerate(steps):
+        blender.shown(objects, step / FRAMES_PER_SECOND)
+        picture = blender.render(tmp_path / f"{step}.png", (width, height), "BLENDER_WORKBENCH")
+        rows, columns = numpy.nonzero(picture[..., 3] > 0.25)
+        assert len(rows) > 50
+        x, y = axes @ numpy.array([blender.to_blender(place - middle) for place in places]).T / pixel
+        expected = [x.min() + width / 2, x.max() + width / 2, height / 2 - y.max(), height / 2 - y.min()]
+        boxes.append([columns.min(), columns.max() + 1, rows.min(), rows.max() + 1])
+        assert boxes[-1] == pytest.approx(expected, abs=1.5)
+    assert len(set(map(tuple, boxes))) == len(boxes)
 
 
 def test_the_observer_sees_a_circle(flyby, tmp_path):

@@ -44,6 +44,16 @@ def test_ply_keeps_its_precision(scene, export):
     assert mesh.vertex_scalar_array().tolist() == expected.quality.tolist()
 
 
+def test_more_numbers_at_vertices_change_nothing(export):
+    """MeshLab takes of a PLY file the properties it knows, and is not led astray by the others."""
+    path = export(SEVERAL, "--attributes", "doppler,emission_time,rest_position", to="out.ply")
+    (mesh,) = open_file(path)
+    (plain,) = open_file(export(SEVERAL, to="out.ply"))
+    assert mesh.vertex_matrix().tolist() == plain.vertex_matrix().tolist()
+    assert mesh.face_matrix().tolist() == plain.face_matrix().tolist()
+    assert mesh.vertex_scalar_array().tolist() == plain.vertex_scalar_array().tolist()
+
+
 # A point at rest relative to the observer, the velocity of the object, where the observer sees the point, and
 # its Doppler factor: by a solver that bisects the equation of the light cone with 60 digits.
 POINTS = [
