@@ -88,6 +88,15 @@ struct Limits {
     left: f64,
 }
 
+/// Parts of one object at rest before any refinement, how they are seen at one step, and the gap that is allowed.
+pub(crate) struct Unrefined<'a> {
+    pub(crate) view: View,
+    /// With names in files; those of a shape as fine as the tolerance asks for.
+    pub(crate) parts: Cow<'a, [(String, Part)]>,
+    /// Before the factor `gamma beta`.
+    pub(crate) allowance: Allowance,
+}
+
 /// A part of the object, refined and seen.
 pub(super) struct Surface {
     pub(super) name: String,
@@ -181,6 +190,16 @@ impl<'a> Plan<'a> {
             // Added up in their order: the same sum for any number of threads.
             triangles: pieces.collect::<Vec<f64>>().iter().sum(),
             reachable: kept && draft.limits.left >= LEAST_FOR_GAP * self.aimed_length,
+        }
+    }
+
+    /// What refinement starts from.
+    pub(super) fn unrefined(mut self) -> Unrefined<'a> {
+        let Draft { parts, limits, .. } = self.draft();
+        Unrefined {
+            view: self.view,
+            parts,
+            allowance: limits.allowance,
         }
     }
 
