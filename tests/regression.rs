@@ -3,6 +3,8 @@
 mod common;
 
 use common::command::{Workplace, glb_json};
+use common::refining::{Sighting, plate};
+use photosurface::{DVec3, Precision, Tolerance, Velocity};
 use serde_json::json;
 
 /// The header of a PNG, which is all of it that is looked at.
@@ -272,4 +274,17 @@ fn a_file_name_need_not_be_text() {
         .status();
     assert!(status.unwrap().success());
     assert!(name(b"\xfe_step000.glb").exists());
+}
+
+/// What rounding takes of a tolerance was known before refinement only, by the extent that the corners had: the
+/// photosurface between them reaches farther, and near the limits of `f32` the certificate was missed by as much.
+#[test]
+fn what_is_beyond_the_corners_is_rounded_too() {
+    let velocity = Velocity::from_beta(0.1, DVec3::X).unwrap();
+    for tolerance in [1.2e-7, 2e-7, 4e-7] {
+        let mut sighting = Sighting::new(DVec3::ZERO, velocity, Tolerance::Absolute(tolerance));
+        sighting.wanted.precision = Precision::Single;
+        let made = sighting.of_one(&plate(0.001)).certificate;
+        assert!(made.rounding > 0.2 * tolerance && made.complete, "{made:?}");
+    }
 }

@@ -36,6 +36,10 @@ const NEAREST: f64 = 0.01;
 /// touches a surface, any gap is seen under the same angle.
 const LEAST_OF_ANGLE: f64 = 1e-6;
 
+/// Where rounding is less than this part of a tolerance, what there is of it beyond the corners of facets goes into
+/// [`ROOM`]: ten times as much would.
+const LITTLE_ROUNDING: f64 = 1e-4;
+
 /// Round shapes of more facets are not made to predict what refinement will do to them.
 const FACETS_MADE_TO_PREDICT: u64 = 20_000;
 
@@ -129,7 +133,7 @@ impl<'a> Plan<'a> {
         };
         if let Some(shaped) = &placed.shaped {
             let mesh = placed.parts[0].1.mesh();
-            let rounding = plan.rounding(mesh, &plan.seen[0]);
+            let rounding = plan.rounding(mesh, &plan.seen[0], 0.0);
             let target = CURVATURE_SHARE * plan.deviation_allowed(rounding, mesh);
             let shape = match wanted.subdivide {
                 true => shaped.shape.within(target / shaped.largest_scale),
@@ -325,7 +329,7 @@ impl<'a> Plan<'a> {
             gap: self.view.relative_velocity().gamma_beta() * gap * (1.0 + 4.0 * f64::EPSILON),
             deviation: self.deviation,
             curvature: limits.curvature,
-            rounding: self.rounding(refined, seen),
+            rounding: self.rounding(refined, seen, 0.0),
         };
         let counts = Counts {
             triangles_in: mesh.triangles().len(),
@@ -376,9 +380,23 @@ impl<'a> Plan<'a> {
             });
             curvature = self.deviation * stretches.reduce(|| 0.0, f64::max);
         }
-        let rounding = (seen.iter().zip(parts))
-            .map(|(seen, (_, part))| self.rounding(part.mesh(), seen))
-            .fold(0.0, f64::max);
+        let rounding = |bulging: bool| {
+            let of_each = seen.iter().zip(parts).map(|(seen, (_, part))| {
+                let bulge = match bulging {
+                    true => {
+                        self.view.relative_velocity().gamma_beta() * self.largest_gap(part.mesh())
+                    }
+                    false => 0.0,
+                };
+                self.rounding(part.mesh(), seen, bulge)
+            });
+            of_each.fold(0.0, f64::max)
+        };
+        let of_corners = rounding(false);
+        let rounding = match of_corners > LITTLE_ROUNDING * self.aimed_length {
+            true => rounding(true),
+            false => of_corners,
+        };
         let left = self.aimed_length - curvature - rounding;
         Limits {
             allowance: self.allowance(self.aimed, left, curvature, rounding, seen),
@@ -388,12 +406,14 @@ impl<'a> Plan<'a> {
         }
     }
 
-    fn rounding(&self, mesh: &Mesh, seen: &Mesh) -> f64 {
+    /// What rounding moves vertices by, also those that refinement will add where the photosurface is beyond the flat
+    /// triangles between the vertices that there are, by at most `bulge`.
+    fn rounding(&self, mesh: &Mesh, seen: &Mesh, bulge: f64) -> f64 {
         let (center, radius) = ball(mesh);
         let stretch = self.view.stretch_bound(center, radius);
         let in_file = match (self.precision, self.travel.or(seen.bounds())) {
             (Precision::Single, Some((low, high))) => Some(Singles {
-                extent: high - low,
+                extent: high - low + bulge,
                 roundings: if self.travel.is_some() { 3.0 } else { 1.0 },
             }),
             _ => None,
