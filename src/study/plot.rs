@@ -137,7 +137,8 @@ impl CostStudy {
                 Some(title) => format!("What accuracy costs: {title}"),
                 None => "What accuracy costs".to_owned(),
             };
-            let area = area.titled(&title, text)?;
+            let above = (5.0 * scale) as i32;
+            let area = area.margin(above, 0, 0, 0).titled(&title, text)?;
             let (left, right) = area.split_horizontally(area.dim_in_pixel().0 / 2);
             triangles.draw(&left, scale)?;
             times.draw(&right, scale)?;
