@@ -257,8 +257,7 @@ fn table(study: &CostStudy, out: &mut dyn Write) -> anyhow::Result<()> {
 
 /// One line of the table.
 fn cells(cost: &MeshCost) -> [String; HEADINGS.len()] {
-    let mut cells = [const { String::new() }; HEADINGS.len()];
-    cells.fill("-".to_owned());
+    let mut cells: [String; HEADINGS.len()] = std::array::from_fn(|_| "-".to_owned());
     cells[0] = format!("{:.0e}", cost.tolerance);
     if cells[0].parse() != Ok(cost.tolerance) {
         cells[0] = format!("{:.3e}", cost.tolerance);

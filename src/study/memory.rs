@@ -40,19 +40,20 @@ mod tests {
         assert_eq!(peak_of("VmHWM:\tmuch\n"), None);
     }
 
+    /// Other tests run beside this one: what they give back may be as much as what this one takes.
     #[test]
     fn what_is_used_meanwhile_counts() {
         if !restart_peak() {
             return;
         }
-        let before = peak_bytes().unwrap();
+        const BYTES: usize = 64 << 20;
         // Nothing is resident until it is written to.
-        let used = vec![1u8; 64 << 20];
-        let after = peak_bytes().unwrap();
+        let used = vec![1u8; BYTES];
+        let peak = peak_bytes().unwrap();
         assert_eq!(
             used.iter().map(|&byte| usize::from(byte)).sum::<usize>(),
-            64 << 20
+            BYTES
         );
-        assert!(after >= before + (32 << 20), "{before} {after}");
+        assert!((BYTES as u64..1 << 40).contains(&peak), "{peak}");
     }
 }
