@@ -7,7 +7,7 @@
 //! relativistic image; seen from anywhere else it explains that image.
 //!
 //! The way through the library: read or build a [`Scene`], get the models of its objects with
-//! [`load_models`], put both on a [`Stage`], take its [`Photosurface`]s, write them with [`write_glb`]. The
+//! [`load_models`], put both on a [`Stage`], take its [`Photosurface`]s, write them with [`write_glb`]; [`CostStudy`] tells what accuracy costs. The
 //! mathematics alone is in [`Velocity`], [`Lorentz`], [`PhotosurfaceMap`] and [`View`].
 //!
 //! Conventions: c = 1; lengths and times share one unit; right-handed coordinates, y up; angles in radians.
@@ -23,6 +23,7 @@ mod mesh;
 mod photosurface;
 mod scene;
 mod spacetime;
+mod study;
 mod tessellate;
 
 pub use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec4};
@@ -47,4 +48,8 @@ pub use scene::{
     SceneError, Source, Tolerance, ToleranceError, UnknownAttribute, even_steps,
 };
 pub use spacetime::{Event, Lorentz, MAX_RAPIDITY, Velocity, VelocityError, WorldLine};
+pub use study::{
+    CostSettings, CostStudy, Made, MeshCost, PlotError, PlotSize, Seconds, StudyError, UniformCost,
+    UniformRun,
+};
 pub use tessellate::{Certificate, Precision, edge_gap, triangle_gap, triangle_gap_place};

@@ -22,6 +22,7 @@ use plan::{Plan, Surface};
 pub use budget::Prediction;
 pub use facts::{Facts, SceneFacts};
 pub use names::step_label;
+pub(crate) use plan::Unrefined;
 pub use seen::VertexData;
 use seen::condition;
 
@@ -203,6 +204,16 @@ impl Stage {
                 .into_iter()
                 .map(move |surface| self.photosurface(object, step, &view, surface, wanted))
         })
+    }
+
+    /// What refinement starts from at one step, for each object.
+    pub(crate) fn unrefined(
+        &self,
+        step: usize,
+        wanted: Wanted,
+    ) -> impl Iterator<Item = Unrefined<'_>> {
+        let objects = self.scene.objects().iter().zip(&self.objects);
+        objects.map(move |(object, placed)| self.plan(object, placed, step, wanted).unrefined())
     }
 
     /// Whether all that is seen at one step is well within the range of `f32`, so that nothing can overflow or

@@ -632,6 +632,7 @@ fn help_names_every_command_and_the_units() {
     for word in [
         "export",
         "check",
+        "cost",
         "example",
         "schema",
         "the speed of light is 1",

@@ -5,10 +5,10 @@ mod common;
 use std::sync::Arc;
 
 use common::command::{Workplace, glb_json};
-use common::refining::model;
+use common::refining::{Sighting, model, plate};
 use photosurface::{
-    DVec3, Event, Lorentz, Mesh, Object, Observer, PhotosurfaceMap, Scene, Source, Stage, Velocity,
-    View, Wanted, WorldLine, load_models,
+    DVec3, Event, Lorentz, Mesh, Object, Observer, PhotosurfaceMap, Precision, Scene, Source,
+    Stage, Tolerance, Velocity, View, Wanted, WorldLine, load_models,
 };
 use serde_json::json;
 
@@ -407,4 +407,17 @@ fn a_budget_that_nothing_fits_is_given_up_soon() {
     );
     assert_eq!(run.status, 1, "{run}");
     assert!(workplace.files().contains(&"out.glb".to_owned()));
+}
+
+/// What rounding takes of a tolerance was known before refinement only, by the extent that the corners had: the
+/// photosurface between them reaches farther, and near the limits of `f32` the certificate was missed by as much.
+#[test]
+fn what_is_beyond_the_corners_is_rounded_too() {
+    let velocity = Velocity::from_beta(0.1, DVec3::X).unwrap();
+    for tolerance in [1.2e-7, 2e-7, 4e-7] {
+        let mut sighting = Sighting::new(DVec3::ZERO, velocity, Tolerance::Absolute(tolerance));
+        sighting.wanted.precision = Precision::Single;
+        let made = sighting.of_one(&plate(0.001)).certificate;
+        assert!(made.rounding > 0.2 * tolerance && made.complete, "{made:?}");
+    }
 }

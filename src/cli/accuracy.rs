@@ -220,7 +220,7 @@ fn whole_number(text: &str) -> anyhow::Result<u64> {
 }
 
 /// `1e-3`, `abs:0.01` or `deg:0.02`
-fn tolerance(text: &str) -> anyhow::Result<Tolerance> {
+pub(super) fn tolerance(text: &str) -> anyhow::Result<Tolerance> {
     let number = |text: &str| -> anyhow::Result<f64> {
         text.trim()
             .parse()

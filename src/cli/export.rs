@@ -1,6 +1,5 @@
 //! `photosurface export`: photosurfaces as meshes.
 
-use std::collections::{HashMap, HashSet};
 use std::ffi::OsStr;
 use std::fs;
 use std::io::{IsTerminal, Write, stderr, stdout};
@@ -12,14 +11,14 @@ use anyhow::{Context, bail, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
 use photosurface::{
     Attribute, Export, Facts, Format, GltfFile, Playback, Precision, Report, Scene, Stage,
-    StageTime, Wanted, WriteError, destination, step_label, write_ply, write_whole,
+    StageTime, Wanted, WriteError, step_label, write_ply, write_whole,
 };
-
 use tempfile::{SpooledTempFile, spooled_tempfile, spooled_tempfile_in};
 
 use super::Status;
 use super::accuracy::{AccuracyArgs, Tally};
 use super::args::{InputArgs, ObserverArgs};
+use super::destinations::{check_destinations, is_stdout};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print, size};
 
@@ -126,7 +125,7 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
                 .map(|report| with_suffix(report, &suffix)),
         })
         .collect();
-    check_destinations(&levels, format, &input.files)?;
+    check_destinations(outputs(&levels, format), &input.files)?;
     clock.stop("read");
 
     let mut status = Status::Done;
@@ -443,45 +442,14 @@ impl OutputArgs {
     }
 }
 
-/// Before any work: every file can be written, none is one of those that are read, and no two are one.
-fn check_destinations(levels: &[Level], format: Format, read: &[PathBuf]) -> anyhow::Result<()> {
-    let read: HashSet<_> = read
-        .iter()
-        .filter_map(|file| fs::canonicalize(file).ok())
-        .collect();
-    let outputs = |level: &Level| {
-        let binaries = level.files.iter().filter(|_| format == Format::Gltf);
+/// All files of all levels of detail.
+fn outputs(levels: &[Level], format: Format) -> impl Iterator<Item = PathBuf> {
+    levels.iter().flat_map(move |level| {
+        let binaries = level.files.iter().filter(move |_| format == Format::Gltf);
         let binaries = binaries.map(|file| binary_beside(file));
-        let all = level
-            .files
-            .iter()
-            .cloned()
-            .chain(binaries)
-            .chain(level.report.clone());
-        all.collect::<Vec<_>>()
-    };
-    let mut written: HashMap<PathBuf, PathBuf> = HashMap::new();
-    for file in levels
-        .iter()
-        .flat_map(outputs)
-        .filter(|file| !is_stdout(file))
-    {
-        let place = destination(&file)?;
-        ensure!(
-            !read.contains(&place),
-            "{}: would be written over what is read; choose another name",
-            file.display()
-        );
-        if let Some(other) = written.get(&place) {
-            bail!(
-                "{}: would be written over {}, which is an output too; choose another name",
-                file.display(),
-                other.display()
-            );
-        }
-        written.insert(place, file);
-    }
-    Ok(())
+        let files = level.files.iter().cloned();
+        files.chain(binaries).chain(level.report.clone())
+    })
 }
 
 /// Writes a file of some steps, and does what is left to do when all of it is written and it is about to appear.
@@ -607,10 +575,6 @@ fn progress_bar(stage: &Stage, verbosity: Verbosity) -> ProgressBar {
 
 fn binary_beside(path: &Path) -> PathBuf {
     path.with_extension("bin")
-}
-
-fn is_stdout(path: &Path) -> bool {
-    path == Path::new("-")
 }
 
 /// Wall-clock time of each stage, those of one name added up.

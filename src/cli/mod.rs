@@ -3,6 +3,8 @@
 mod accuracy;
 mod args;
 mod check;
+mod cost;
+mod destinations;
 mod example;
 mod export;
 mod input;
@@ -49,6 +51,7 @@ struct Cli {
 enum Command {
     Export(export::ExportArgs),
     Check(check::CheckArgs),
+    Cost(cost::CostArgs),
     Example(example::ExampleArgs),
     Schema(schema::SchemaArgs),
 }
@@ -67,6 +70,7 @@ pub(crate) fn run() -> ExitCode {
     let done = match cli.command {
         Command::Export(args) => export::run(&args),
         Command::Check(args) => check::run(&args).map(|()| Status::Done),
+        Command::Cost(args) => cost::run(&args).map(|()| Status::Done),
         Command::Example(args) => example::run(&args).map(|()| Status::Done),
         Command::Schema(args) => schema::run(&args).map(|()| Status::Done),
     };

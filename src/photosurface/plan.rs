@@ -39,6 +39,10 @@ const NEAREST_OF_ALL: f64 = 1e-5;
 /// touches a surface, any gap is seen under the same angle.
 const LEAST_OF_ANGLE: f64 = 1e-6;
 
+/// Where rounding is less than this part of a tolerance, what there is of it beyond the corners of facets goes into
+/// [`ROOM`]: ten times as much would.
+const LITTLE_ROUNDING: f64 = 1e-4;
+
 /// Round shapes of more facets are not made to predict what refinement will do to them.
 const FACETS_MADE_TO_PREDICT: u64 = 20_000;
 
@@ -95,6 +99,15 @@ struct Limits {
     /// What curvature and rounding leave of the length aimed at; negative where they take more.
     left: f64,
     rounding: f64,
+}
+
+/// Parts of one object at rest before any refinement, how they are seen at one step, and the gap that is allowed.
+pub(crate) struct Unrefined<'a> {
+    pub(crate) view: View,
+    /// With names in files; those of a shape as fine as the tolerance asks for.
+    pub(crate) parts: Cow<'a, [(String, Part)]>,
+    /// Before the factor `gamma beta`.
+    pub(crate) allowance: Allowance,
 }
 
 /// A part of the object, refined and seen.
@@ -212,6 +225,16 @@ impl<'a> Plan<'a> {
             triangles: pieces.collect::<Vec<f64>>().iter().sum(),
             before,
             reachable,
+        }
+    }
+
+    /// What refinement starts from.
+    pub(super) fn unrefined(mut self) -> Unrefined<'a> {
+        let Draft { parts, limits, .. } = self.draft();
+        Unrefined {
+            view: self.view,
+            parts,
+            allowance: limits.allowance,
         }
     }
 
@@ -398,14 +421,23 @@ impl<'a> Plan<'a> {
             });
             curvature = self.deviation * stretches.reduce(|| 0.0, f64::max);
         }
-        // What is refined reaches farther than its corners, by the gap at most.
-        let bulge = self.view.relative_velocity().gamma_beta();
-        let rounding = (seen.iter().zip(parts))
-            .map(|(seen, (_, part))| {
-                let mesh = part.mesh();
-                self.rounding(mesh, seen, bulge * self.largest_gap(mesh))
-            })
-            .fold(0.0, f64::max);
+        let rounding = |bulging: bool| {
+            let of_each = seen.iter().zip(parts).map(|(seen, (_, part))| {
+                let bulge = match bulging {
+                    true => {
+                        self.view.relative_velocity().gamma_beta() * self.largest_gap(part.mesh())
+                    }
+                    false => 0.0,
+                };
+                self.rounding(part.mesh(), seen, bulge)
+            });
+            of_each.fold(0.0, f64::max)
+        };
+        let of_corners = rounding(false);
+        let rounding = match of_corners > LITTLE_ROUNDING * self.aimed_length {
+            true => rounding(true),
+            false => of_corners,
+        };
         let left = self.aimed_length - curvature - rounding;
         Limits {
             allowance: self.allowance(self.aimed, left, curvature, rounding, seen),
@@ -416,7 +448,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// A bound of the rounding of a mesh, also when it is refined so that it reaches farther by `bulge`.
+    /// What rounding moves vertices by, also those that refinement will add where the photosurface is beyond the flat
+    /// triangles between the vertices that there are, by at most `bulge`.
     fn rounding(&self, mesh: &Mesh, seen: &Mesh, bulge: f64) -> f64 {
         let (center, radius) = ball(mesh);
         let stretch = self.view.stretch_bound(center, radius);

@@ -1,0 +1,143 @@
+//! The error, measured: how far what is drawn is from what is seen, at random places.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::random::Random;
+use super::true_surface::TrueSurface;
+use crate::light_cone::View;
+use crate::photosurface::{Photosurface, Stage, Wanted};
+use crate::scene::Attributes;
+
+/// Places that a thread takes at a time; each lot has random numbers of its own, so that the result does not depend
+/// on how many threads there are.
+const LOT: usize = 4096;
+
+/// However many photosurfaces share the places, each gets so many.
+const FEWEST_PLACES: usize = 100;
+
+/// The largest error found on the photosurfaces of a stage.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Measured {
+    /// A length in the observer's frame.
+    pub(super) length: f64,
+    /// Over the tolerance of the same photosurface.
+    pub(super) of_tolerance: f64,
+    /// Over the proven bound of the same photosurface.
+    pub(super) of_bound: f64,
+}
+
+/// What is seen, and what is drawn instead, of one place.
+#[derive(Clone, Copy)]
+pub(super) struct Pair {
+    pub(super) seen: DVec3,
+    pub(super) drawn: DVec3,
+}
+
+impl Pair {
+    pub(super) fn distance(self) -> f64 {
+        self.seen.distance(self.drawn)
+    }
+
+    /// The angle between the two for the observer, in degrees.
+    fn angle_deg(self) -> f64 {
+        let sine = self.seen.cross(self.drawn).length();
+        sine.atan2(self.seen.dot(self.drawn)).to_degrees()
+    }
+}
+
+/// Holds about `samples` random places of all photosurfaces of a stage, `triangles` in all, against the truth.
+///
+/// A place is a point of a facet at rest, on a round shape the point of the true surface nearest to it. Its light
+/// comes from where the map says; drawn it is on the flat triangle between the mapped corners, with the same weights of the
+/// corners. Neither the closed form of the gap nor anything else of the proof is used.
+pub(super) fn measure(stage: &Stage, wanted: Wanted, triangles: usize, samples: usize) -> Measured {
+    // With places at rest, which no refined mesh holds otherwise.
+    let wanted = Wanted {
+        attributes: Attributes {
+            rest_position: true,
+            ..Attributes::default()
+        },
+        ..wanted
+    };
+    let scene = stage.scene();
+    let observer = scene.observer().world_line();
+    let mut worst = Measured::default();
+    for (step, &proper_time) in scene.steps().iter().enumerate() {
+        let owners = stage
+            .objects()
+            .flat_map(|(object, parts)| parts.iter().map(move |_| object));
+        for (photosurface, object) in stage.photosurfaces(step, wanted).zip(owners) {
+            let view = View::new(&observer, &object.world_line(), proper_time);
+            let surface = TrueSurface::of(object);
+            let here = photosurface.facts.triangles;
+            let places = (samples as f64 * here as f64 / triangles as f64).ceil() as usize;
+            let places = places.max(FEWEST_PLACES);
+            let found = of_one(&photosurface, &view, surface.as_ref(), places);
+            worst = Measured {
+                length: worst.length.max(found.length),
+                of_tolerance: worst.of_tolerance.max(found.of_tolerance),
+                of_bound: worst.of_bound.max(found.of_bound),
+            };
+        }
+    }
+    worst
+}
+
+fn of_one(
+    photosurface: &Photosurface,
+    view: &View,
+    surface: Option<&TrueSurface>,
+    places: usize,
+) -> Measured {
+    let rest = photosurface.vertex_data.rest_positions.as_deref();
+    let rest = rest.expect("rest positions were asked for");
+    let (seen, triangles) = (photosurface.mesh.positions(), photosurface.mesh.triangles());
+    let certificate = &photosurface.facts.certificate;
+    let in_degrees = certificate.unit == "degrees";
+    let place = |index: usize, random: &mut Random| {
+        // Every triangle in turn, if there are enough places for that.
+        let triangle = match places >= triangles.len() {
+            true => index % triangles.len(),
+            false => random.below(triangles.len()),
+        };
+        let corners = triangles[triangle].map(|corner| corner as usize);
+        let weights = random.weights();
+        let point = mix(corners.map(|corner| rest[corner]), weights);
+        let point = surface.map_or(point, |surface| surface.nearest(point));
+        Pair {
+            seen: view.seen_position(point),
+            drawn: mix(corners.map(|corner| seen[corner]), weights),
+        }
+    };
+    let error = |pair: Pair| match in_degrees {
+        true => [pair.distance(), pair.angle_deg()],
+        false => [pair.distance(); 2],
+    };
+    let [length, error] = largest(places, place, error);
+    Measured {
+        length,
+        of_tolerance: error / certificate.tolerance,
+        of_bound: error / certificate.total,
+    }
+}
+
+/// The largest errors of so many places.
+pub(super) fn largest<const N: usize>(
+    places: usize,
+    place: impl Fn(usize, &mut Random) -> Pair + Sync,
+    errors: impl Fn(Pair) -> [f64; N] + Sync,
+) -> [f64; N] {
+    let larger = |a: [f64; N], b: [f64; N]| std::array::from_fn(|i| a[i].max(b[i]));
+    let lots = (0..places.div_ceil(LOT)).into_par_iter().map(|lot| {
+        let mut random = Random::new(lot as u64);
+        let lot = lot * LOT..places.min((lot + 1) * LOT);
+        lot.map(|index| errors(place(index, &mut random)))
+            .fold([0.0; N], larger)
+    });
+    lots.reduce(|| [0.0; N], larger)
+}
+
+pub(super) fn mix([a, b, c]: [DVec3; 3], weights: DVec3) -> DVec3 {
+    a * weights.x + b * weights.y + c * weights.z
+}

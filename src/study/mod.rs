@@ -1,0 +1,197 @@
+//! What accuracy costs: for one tolerance after the other the triangles, bytes, time and memory that it takes, what is
+//! proven and what is measured then, and what theory and uniform subdivision say.
+
+mod measured;
+mod memory;
+mod mesh_cost;
+mod plot;
+mod random;
+mod true_surface;
+mod uniform;
+
+use std::num::NonZeroUsize;
+
+use serde::Serialize;
+use thiserror::Error;
+
+pub use mesh_cost::{Made, MeshCost, Seconds};
+pub use plot::{PlotError, PlotSize};
+pub use uniform::{UniformCost, UniformRun};
+
+use crate::io::WriteError;
+use crate::mesh::Model;
+use crate::photosurface::{SceneFacts, Stage};
+use crate::scene::{Scene, Tolerance};
+
+/// What a study looks at, and how closely.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CostSettings {
+    /// All in one unit, none twice, in any order.
+    pub tolerances: Vec<Tolerance>,
+    /// How often each is carried out; times are medians.
+    pub repeats: NonZeroUsize,
+    /// What would take more triangles is foretold, and not made.
+    pub most_triangles: u64,
+    /// At about how many random places the error of each tolerance is measured.
+    pub samples: NonZeroUsize,
+    /// Uniform subdivision is counted, and not carried out, where it makes more triangles.
+    pub most_uniform_triangles: u64,
+}
+
+impl Default for CostSettings {
+    /// From a tenth to a millionth of the diagonal.
+    fn default() -> Self {
+        let tolerances = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+        Self {
+            tolerances: tolerances.map(Tolerance::Relative).to_vec(),
+            repeats: NonZeroUsize::MIN.saturating_add(2),
+            most_triangles: 3_000_000,
+            samples: NonZeroUsize::MIN.saturating_add(199_999),
+            most_uniform_triangles: 2_000_000,
+        }
+    }
+}
+
+/// What accuracy costs in one scene.
+///
+/// # Example
+///
+/// ```
+/// use photosurface::{CostSettings, CostStudy, Scene, Tolerance, load_models};
+///
+/// let scene = Scene::from_json(
+///     r#"{ "observer": { "velocity": { "beta": 0.8 } },
+///          "objects": [ { "name": "box", "shape": { "box": { "size": [1, 1, 1] } }, "position": [0, 0, -2] } ] }"#,
+/// )?;
+/// let (models, _) = load_models(&scene, ".".as_ref())?;
+/// let settings = CostSettings {
+///     tolerances: vec![Tolerance::Relative(1e-2), Tolerance::Relative(1e-3)],
+///     ..CostSettings::default()
+/// };
+/// let study = CostStudy::new(&scene, &models, &settings, |_| ())?;
+/// for cost in &study.meshes {
+///     let made = cost.made.as_ref().expect("few triangles");
+///     assert!(made.error <= made.bound && made.bound <= cost.tolerance);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CostStudy {
+    /// The scene.
+    pub scene: SceneFacts,
+    /// Of tolerances: `relative`, to the diagonal of each photosurface, `absolute`, a length, or `angle_deg`.
+    pub unit: &'static str,
+    /// How many threads there were.
+    pub threads: usize,
+    /// How often each tolerance was carried out.
+    pub repeats: usize,
+    /// Places at which each error was measured.
+    pub samples: usize,
+    /// Of photosurfaces as meshes, the loosest tolerance first.
+    pub meshes: Vec<MeshCost>,
+}
+
+/// Why there is nothing to study.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// No tolerance.
+    #[error("no tolerance to study, expected at least one")]
+    NoTolerance,
+    /// One tolerance twice.
+    #[error("the tolerance {0} is there twice, expected each once")]
+    Repeated(Tolerance),
+    /// Tolerances that cannot be put in order.
+    #[error("the tolerances {0} and {1} differ in their units, expected one unit for all")]
+    MixedUnits(Tolerance, Tolerance),
+    /// Photosurfaces that no file can hold.
+    #[error("at the tolerance {tolerance}")]
+    Write {
+        /// Which.
+        tolerance: Tolerance,
+        /// Why.
+        source: WriteError,
+    },
+}
+
+impl CostStudy {
+    /// Studies a scene with one model for each object; `done` is told of every tolerance as soon as it is done.
+    ///
+    /// # Errors
+    ///
+    /// No tolerance, one twice, or several units; photosurfaces that do not make a file.
+    ///
+    /// # Panics
+    ///
+    /// If there are not as many models as objects.
+    pub fn new(
+        scene: &Scene,
+        models: &[Model],
+        settings: &CostSettings,
+        mut done: impl FnMut(&MeshCost),
+    ) -> Result<Self, StudyError> {
+        let tolerances = in_order(&settings.tolerances)?;
+        let &[first, ..] = tolerances.as_slice() else {
+            return Err(StudyError::NoTolerance);
+        };
+        // From loose to tight, so that what an allocator keeps of one says little of the next one's memory.
+        let mut meshes = Vec::with_capacity(tolerances.len());
+        for tolerance in tolerances {
+            let cost = mesh_cost::mesh_cost(scene, models, tolerance, settings)?;
+            done(&cost);
+            meshes.push(cost);
+        }
+        Ok(Self {
+            scene: Stage::new(scene.clone(), models.to_vec()).facts(),
+            unit: number_and_unit(first).1,
+            threads: rayon::current_num_threads(),
+            repeats: settings.repeats.get(),
+            samples: settings.samples.get(),
+            meshes,
+        })
+    }
+
+    /// The study as JSON text.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string_pretty(self).expect("a study is names and numbers")
+    }
+}
+
+/// As a scene file has it.
+fn number_and_unit(tolerance: Tolerance) -> (f64, &'static str) {
+    match tolerance {
+        Tolerance::Relative(fraction) => (fraction, "relative"),
+        Tolerance::Absolute(length) => (length, "absolute"),
+        Tolerance::Angle(degrees) => (degrees, "angle_deg"),
+    }
+}
+
+/// The loosest first.
+fn in_order(tolerances: &[Tolerance]) -> Result<Vec<Tolerance>, StudyError> {
+    let mut sorted = tolerances.to_vec();
+    sorted.sort_by(|&a, &b| number_and_unit(b).0.total_cmp(&number_and_unit(a).0));
+    for pair in sorted.windows(2) {
+        if number_and_unit(pair[0]).1 != number_and_unit(pair[1]).1 {
+            return Err(StudyError::MixedUnits(pair[0], pair[1]));
+        }
+        if pair[0] == pair[1] {
+            return Err(StudyError::Repeated(pair[0]));
+        }
+    }
+    Ok(sorted)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tolerances_are_put_in_order_or_refused() {
+        use Tolerance::{Absolute, Relative};
+        let sorted = in_order(&[Relative(1e-3), Relative(1e-1), Relative(1e-2)]).unwrap();
+        assert_eq!(sorted, [1e-1, 1e-2, 1e-3].map(Relative));
+        let error = |tolerances: &[Tolerance]| in_order(tolerances).unwrap_err().to_string();
+        assert!(error(&[Absolute(1.0), Relative(0.5)]).contains("abs:1.000e0 and 5.000e-1"));
+        assert!(error(&[Absolute(1.0), Absolute(1.0)]).contains("abs:1.000e0 is there twice"));
+    }
+}

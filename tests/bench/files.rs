@@ -1,0 +1,129 @@
+//! Throughput of files, in bytes a second: GLB and OBJ in, GLB and PLY out.
+//!
+//! `cargo bench --bench files`; with `-- --quick` in a fraction of the time. A GLB is read from memory and both are
+//! written to memory; an OBJ is read from a file, as it always is.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+use common::refining::{Sighting, frozen, model};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use photosurface::{
+    DVec3, Export, Mesh, Photosurface, Shape, Source, Stage, Tolerance, Velocity, Wanted,
+    read_gltf_bytes, read_model, write_glb, write_ply,
+};
+
+/// Of 512 to 2 million triangles.
+const CELLS: [u32; 4] = [16, 100, 320, 1000];
+
+type Writer = fn(&Stage, &[Photosurface]) -> Vec<u8>;
+
+fn grid(cells: u32) -> Mesh {
+    frozen(Shape::grid(2.0, cells).expect("a size and a count"), 1)
+}
+
+/// The photosurface of a mesh, all of its vertices and no other.
+fn photosurfaces(mesh: Mesh) -> (Stage, Vec<Photosurface>) {
+    let velocity = Velocity::from_beta(0.6, DVec3::NEG_Z).expect("slower than light");
+    let mut sighting = Sighting::new(DVec3::new(0.0, 0.0, 3.0), velocity, Tolerance::default());
+    sighting.wanted = Wanted {
+        subdivide: false,
+        ..Wanted::default()
+    };
+    sighting.wanted.attributes.doppler = true;
+    let stage = sighting.stage(Source::Model(Arc::new(model(&[mesh]))));
+    let made = stage.photosurfaces(0, sighting.wanted).collect();
+    (stage, made)
+}
+
+fn with_export<R>(stage: &Stage, made: &[Photosurface], write: impl FnOnce(&Export<'_>) -> R) -> R {
+    write(&Export {
+        scene: &stage.facts(),
+        marker: None,
+        photosurfaces: made,
+        playback: None,
+    })
+}
+
+fn glb(stage: &Stage, made: &[Photosurface]) -> Vec<u8> {
+    let mut bytes = vec![];
+    with_export(stage, made, |export| write_glb(export, &mut bytes)).expect("memory takes it all");
+    bytes
+}
+
+fn ply(stage: &Stage, made: &[Photosurface]) -> Vec<u8> {
+    let mut bytes = vec![];
+    with_export(stage, made, |export| write_ply(export, &mut bytes)).expect("memory takes it all");
+    bytes
+}
+
+fn obj(mesh: &Mesh) -> String {
+    let mut text = String::new();
+    let mut line = |line: std::fmt::Arguments<'_>| writeln!(text, "{line}").expect("a string");
+    for position in mesh.positions() {
+        line(format_args!(
+            "v {} {} {}",
+            position.x, position.y, position.z
+        ));
+    }
+    for [a, b, c] in mesh
+        .triangles()
+        .iter()
+        .map(|corners| corners.map(|corner| corner + 1))
+    {
+        line(format_args!("f {a} {b} {c}"));
+    }
+    text
+}
+
+fn import(criterion: &mut Criterion) {
+    let directory = tempfile::tempdir().expect("a temporary directory can be made");
+    let mut group = criterion.benchmark_group("import, bytes");
+    for cells in CELLS {
+        let mesh = grid(cells);
+        let triangles = mesh.triangles().len();
+        let text = obj(&mesh);
+        let path = directory.path().join("grid.obj");
+        std::fs::write(&path, &text).expect("a temporary file can be written");
+        group.throughput(Throughput::Bytes(text.len() as u64));
+        group.bench_function(BenchmarkId::new("OBJ, triangles", triangles), |bencher| {
+            bencher.iter(|| read_model(&path).expect("it was just written"));
+        });
+        let (stage, made) = photosurfaces(mesh);
+        let bytes = glb(&stage, &made);
+        group.throughput(Throughput::Bytes(bytes.len() as u64));
+        group.bench_function(BenchmarkId::new("GLB, triangles", triangles), |bencher| {
+            bencher.iter(|| read_gltf_bytes(&bytes, Path::new("")).expect("it was just written"));
+        });
+    }
+    group.finish();
+}
+
+fn export(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("export, bytes");
+    for cells in CELLS {
+        let (stage, made) = photosurfaces(grid(cells));
+        let triangles = made[0].facts.triangles;
+        for (name, write) in [("GLB", glb as Writer), ("PLY", ply)] {
+            group.throughput(Throughput::Bytes(write(&stage, &made).len() as u64));
+            let id = BenchmarkId::new(format!("{name}, triangles"), triangles);
+            group.bench_function(id, |bencher| bencher.iter(|| write(&stage, &made)));
+        }
+    }
+    group.finish();
+}
+
+criterion_group! {
+    name = files;
+    config = Criterion::default()
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1));
+    targets = import, export
+}
+criterion_main!(files);
