@@ -21,6 +21,7 @@ mod io;
 mod light_cone;
 mod mesh;
 mod photosurface;
+mod render;
 mod scene;
 mod spacetime;
 mod tessellate;
@@ -40,6 +41,10 @@ pub use mesh::{
     Sphere, Texture, Torus, Wrap,
 };
 pub use photosurface::{Facts, Photosurface, SceneFacts, Stage, Wanted, step_label};
+pub use render::{
+    Camera, CameraError, MAX_PICTURE_SIDE, Picture, PictureOptions, PictureSize, Projection,
+    RenderError, Scenery, Viewpoint,
+};
 pub use scene::{
     BUILT_IN_SCENES, BuiltInScene, InvalidScene, Object, Observer, Scene, SceneError, Source,
     Tolerance, ToleranceError, even_steps,
