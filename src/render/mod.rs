@@ -7,6 +7,7 @@
 
 mod camera;
 mod caster;
+mod cone;
 mod paint;
 mod picture;
 mod scenery;

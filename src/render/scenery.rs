@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::Camera;
 use super::caster::{Caster, MeshHit, Ray};
+use super::cone::Cone;
 use super::paint::{Paint, RenderError};
 use super::picture::{Picture, encoded};
 use super::sight::Sight;
@@ -86,6 +87,19 @@ enum Geometry {
     Ball(Ball),
 }
 
+impl Geometry {
+    /// Centre and radius of a ball around it.
+    fn ball(&self) -> (DVec3, f64) {
+        match self {
+            Self::Mesh(caster) => {
+                let (low, high) = caster.mesh().bounds().unwrap_or_default();
+                ((low + high) / 2.0, low.distance(high) / 2.0)
+            }
+            Self::Ball(ball) => ball.around(),
+        }
+    }
+}
+
 /// In which frame a body's geometry is given.
 #[derive(Clone, Copy)]
 enum Stands {
@@ -102,6 +116,8 @@ struct Sitter<'a> {
     body: &'a Body,
     /// How the observer sees it; none from outside.
     sight: Option<Sight>,
+    /// Where on the sky it is.
+    cone: Cone,
 }
 
 /// What a ray meets.
@@ -190,15 +206,15 @@ impl Scenery {
         options: PictureOptions,
         row_done: &(dyn Fn() + Sync),
     ) -> Picture {
-        let sitters: Vec<_> = self
-            .bodies
-            .iter()
-            .map(|body| Sitter::new(body, viewpoint))
-            .collect();
         let eye = match viewpoint {
             Viewpoint::Observer(..) => DVec3::ZERO,
             Viewpoint::Outside(place) => place,
         };
+        let sitters: Vec<_> = self
+            .bodies
+            .iter()
+            .map(|body| Sitter::new(body, eye, viewpoint))
+            .collect();
         let samples = options.samples.max(1);
         let background = Vec3::from(options.background.linear());
         let sample = |place: DVec2| light(&sitters, eye, camera.direction(place), background);
@@ -252,7 +268,7 @@ fn light(sitters: &[Sitter], eye: DVec3, seen: DVec3, background: Vec3) -> Vec3 
 }
 
 impl<'a> Sitter<'a> {
-    fn new(body: &'a Body, viewpoint: Viewpoint) -> Self {
+    fn new(body: &'a Body, eye: DVec3, viewpoint: Viewpoint) -> Self {
         let sight = match (viewpoint, body.stands) {
             (
                 Viewpoint::Observer(observer, proper_time),
@@ -260,12 +276,20 @@ impl<'a> Sitter<'a> {
             ) => Some(Sight::new(observer, &line, proper_time)),
             _ => None,
         };
-        Self { body, sight }
+        let (center, radius) = body.geometry.ball();
+        let cone = match (&sight, body.stands) {
+            (Some(sight), Stands::AtRest(_)) => sight.cone(center, radius),
+            _ => Cone::of_ball(eye, center, radius),
+        };
+        Self { body, sight, cone }
     }
 
     /// Where the ray from `eye` along `seen` meets it, farther than `beyond` and not as far as `limit`, both as
     /// seen.
     fn meeting(&self, eye: DVec3, seen: DVec3, beyond: f64, limit: f64) -> Option<Meeting<'a>> {
+        if !self.cone.may_hold(seen) {
+            return None;
+        }
         let (origin, direction, stretch) = match (&self.sight, self.body.stands) {
             (Some(sight), Stands::AtRest(_)) => {
                 let ray = sight.ray(seen);

@@ -1,7 +1,8 @@
 //! Light that reaches an observer, in the rest frame of what it came from.
 
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DVec3};
 
+use super::cone::Cone;
 use crate::spacetime::{Lorentz, WorldLine, unit};
 
 /// How light that an observer sees at one event came, for everything that moves with one velocity.
@@ -28,8 +29,11 @@ pub(super) struct Sight {
     /// The observer's direction of motion in the rest frame.
     along: DVec3,
     rapidity: f64,
+    /// `exp(rapidity)` and `exp(-rapidity)`.
+    grow: f64,
+    shrink: f64,
     /// From the observer's axes to those that the boost alone would give.
-    observer_to_boosted: DQuat,
+    observer_to_boosted: DMat3,
 }
 
 /// A ray of light that reaches the observer, in a rest frame, followed back from the observer.
@@ -57,7 +61,9 @@ impl Sight {
             observer_rest: flight.at(proper_time).position,
             along: relative.direction(),
             rapidity: relative.rapidity(),
-            observer_to_boosted: rest_to_observer.rotation().inverse(),
+            grow: relative.rapidity().exp(),
+            shrink: (-relative.rapidity()).exp(),
+            observer_to_boosted: DMat3::from_quat(rest_to_observer.rotation().inverse()),
         }
     }
 
@@ -75,6 +81,16 @@ impl Sight {
             direction: direction.normalize(),
             stretch,
         }
+    }
+
+    /// The part of the observer's sky that a ball takes up, given in the rest frame.
+    pub(super) fn cone(&self, center: DVec3, radius: f64) -> Cone {
+        let boosted_to_observer = self.observer_to_boosted.transpose();
+        Cone::of_ball(self.observer_rest, center, radius).aberrated(
+            self.along,
+            self.rapidity,
+            boosted_to_observer,
+        )
     }
 
     /// The unit normal at rest of a surface that has the normal `normal` where it is seen, in the unit
@@ -102,7 +118,7 @@ impl Sight {
         let (to_front, to_back) = (seen - self.along, seen + self.along);
         let sin_squared = to_front.length_squared() / 4.0;
         let cos_squared = to_back.length_squared() / 4.0;
-        let (grow, shrink) = (self.rapidity.exp(), (-self.rapidity).exp());
+        let Self { grow, shrink, .. } = *self;
         // Of the closer of both differences: its part along the motion, which is that of a rounded unit vector,
         // would be large beside a small part across.
         let closer = if sin_squared < cos_squared {

@@ -9,6 +9,8 @@ pub(super) struct Ball {
     shape: Sphere,
     radius: f64,
     to_model: DAffine3,
+    /// Centre and radius of a ball around it.
+    around: (DVec3, f64),
 }
 
 /// Where a ray meets a [`Ball`].
@@ -21,11 +23,21 @@ pub(super) struct BallHit {
 
 impl Ball {
     pub(super) fn new(shape: Sphere, model_to_rest: DAffine3) -> Self {
+        let radius = shape.radius.get();
+        let stretch = model_to_rest.matrix3;
+        // Of a turned and stretched sphere no point is farther out than along its longest axis.
+        let longest = [stretch.x_axis, stretch.y_axis, stretch.z_axis].map(DVec3::length);
+        let longest = longest.into_iter().fold(0.0, f64::max);
         Self {
-            radius: shape.radius.get(),
+            radius,
             shape,
             to_model: model_to_rest.inverse(),
+            around: (model_to_rest.translation, radius * longest),
         }
+    }
+
+    pub(super) fn around(&self) -> (DVec3, f64) {
+        self.around
     }
 
     /// The nearest hit farther than `beyond` and not as far as `limit`.
