@@ -25,6 +25,10 @@ const MOST_LAYERS: usize = 64;
 /// A ray goes on behind a surface by this part of the way to it, so that it does not meet it again.
 const STEP_BEHIND: f64 = 1.0 + 1e-12;
 
+/// How far facets of a round shape are from it, as a part of its size: less than a tenth of a pixel where it fills
+/// a picture 1000 pixels wide.
+const FACETS: f64 = 1e-4;
+
 /// What is too faint to see: half a step of 8 bits, squared.
 const OPAQUE: f32 = 1.0 / (510.0 * 510.0);
 
@@ -138,7 +142,8 @@ impl Scenery {
 
     /// Adds a part of `object`, at rest, in the object's rest frame.
     ///
-    /// A sphere is met as the surface that it is, whatever facets its part has.
+    /// A sphere is met as the surface that it is, whatever facets its part has; other round shapes get facets
+    /// within a ten thousandth of their size, unless they have a resolution of their own.
     ///
     /// # Errors
     ///
@@ -147,6 +152,17 @@ impl Scenery {
         let geometry = match &object.source {
             Source::Shape(Shape::Sphere(sphere), _) => {
                 Geometry::Ball(Ball::new(sphere.clone(), object.model_to_rest()))
+            }
+            Source::Shape(shape, appearance) => {
+                let size = part
+                    .mesh()
+                    .bounds()
+                    .map_or(0.0, |(low, high)| low.distance(high));
+                let fine = shape.within(FACETS * size / object.scale.max_element());
+                let made = fine.model(appearance).ok();
+                let made = made.and_then(|mut model| model.parts.pop());
+                let made = made.map(|part| part.transformed(&object.model_to_rest()));
+                Geometry::Mesh(Caster::new(made.as_ref().unwrap_or(part).mesh().clone()))
             }
             _ => Geometry::Mesh(Caster::new(part.mesh().clone())),
         };
