@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::{IsTerminal, stderr, stdout};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use anyhow::{Context, bail, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -15,7 +16,7 @@ use super::Status;
 use super::accuracy::{AccuracyArgs, all_certified};
 use super::args::{InputArgs, ObserverArgs, vector};
 use super::input::Input;
-use super::messages::{Verbosity, print};
+use super::messages::{Verbosity, counted, print};
 
 /// From where everything is looked at if nothing else is said: from above, ahead of the middle and to the right.
 const FROM: DVec3 = DVec3::new(0.5, 0.45, 1.0);
@@ -168,6 +169,8 @@ fn render(
     };
     let progress = progress_bar(camera_args.size, files.len(), verbosity);
     let observer = stage.scene().observer().world_line();
+    let (width, height) = (camera_args.size.width(), camera_args.size.height());
+    let rays = width as usize * height as usize * (options.samples * options.samples) as usize;
     let mut made = Vec::new();
     for (step, file) in files.iter().enumerate() {
         let mapped;
@@ -186,9 +189,15 @@ fn render(
                 (camera, Viewpoint::Observer(&observer, proper_time))
             }
         };
+        let start = Instant::now();
         let picture = scenery.picture(&camera, viewpoint, options, &|| progress.inc(1));
+        verbosity.detail(format_args!(
+            "{}: {} in {:.3} s",
+            file.display(),
+            counted(rays, "ray"),
+            start.elapsed().as_secs_f64()
+        ));
         write(file, &picture)?;
-        verbosity.detail(format_args!("{}: written", file.display()));
     }
     progress.finish_and_clear();
     if let (first, Some(last)) = (&files[0], files.last())

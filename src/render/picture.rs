@@ -51,14 +51,14 @@ impl Picture {
     /// # Errors
     ///
     /// `writer` fails.
-    pub fn write_png(&self, writer: impl Write) -> std::io::Result<()> {
+    pub fn write_png(&self, mut writer: impl Write) -> std::io::Result<()> {
         let (width, height) = (self.size.width(), self.size.height());
-        PngEncoder::new(writer)
+        // Encoded first: the encoder's error hides what the writer's was, a broken pipe or a full disk.
+        let mut file = Vec::new();
+        PngEncoder::new(&mut file)
             .write_image(&self.bytes, width, height, ExtendedColorType::Rgb8)
-            .map_err(|error| match error {
-                image::ImageError::IoError(error) => error,
-                other => std::io::Error::other(other),
-            })
+            .expect("three bytes a pixel, written to memory");
+        writer.write_all(&file)
     }
 }
 
