@@ -94,7 +94,10 @@ mod tests {
             ] {
                 let seen = 2.0 * ((angle / 2.0).tan() * (-rapidity).exp()).atan();
                 let direction = DVec3::new(seen.sin(), 0.0, seen.cos());
-                assert_eq!(moving.may_hold(direction), held, "{rapidity} {angle}");
+                let may = moving.may_hold(direction);
+                // Faster, the whole circle is as small as the margin for roundings.
+                let sure = rapidity <= 3.0;
+                assert!(may == held || may && !sure, "{rapidity} {angle}");
             }
         }
         let cone = Cone::of_ball(DVec3::ZERO, DVec3::X, 0.5);

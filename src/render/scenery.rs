@@ -47,6 +47,37 @@ const OPAQUE: f32 = 1.0 / (510.0 * 510.0);
 /// much of it. In the observer's frame the photosurface of whatever comes towards the observer is so long
 /// that all of it would be seen at grazing incidence, and dark. For photosurfaces, normals are taken back to the rest
 /// frame; so both methods shade alike.
+///
+/// # Example
+///
+/// ```
+/// use photosurface::{
+///     Camera, DVec3, PictureOptions, PictureSize, Projection, Scene, Scenery, Stage, Viewpoint, load_models,
+/// };
+///
+/// let scene = Scene::from_json(
+///     r#"{ "observer": { "velocity": { "beta": 0.8 } },
+///          "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1 } }, "position": [0, 0, -5] } ] }"#,
+/// )?;
+/// let (models, _) = load_models(&scene, ".".as_ref())?;
+/// let stage = Stage::new(scene, models);
+/// let mut scenery = Scenery::new();
+/// for (object, parts) in stage.objects() {
+///     for (_, part) in parts {
+///         scenery.add_at_rest(object, part)?;
+///     }
+/// }
+/// let camera = Camera::new(PictureSize::new(64, 48)?, Projection::Pinhole { vertical_fov_deg: 30.0 }, DVec3::NEG_Z)?;
+/// let observer = stage.scene().observer().world_line();
+/// let picture = scenery.picture(
+///     &camera,
+///     Viewpoint::Observer(&observer, 0.0),
+///     PictureOptions::default(),
+///     &|| (),
+/// );
+/// assert_ne!(picture.pixel(32, 24), picture.pixel(0, 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Default)]
 pub struct Scenery {
     bodies: Vec<Body>,
@@ -368,4 +399,88 @@ fn attributes(mesh: &Mesh, paint: &Paint, hit: &MeshHit) -> (DVec3, DVec2, Vec4)
             .sum()
     });
     (normal, texture, color)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::AlphaMode;
+    use crate::render::{PictureSize, Projection};
+
+    /// A large square at `z` that faces +z, of a linear colour and an opacity.
+    fn square(z: f64, base_color: [f32; 4], alpha_mode: AlphaMode, double_sided: bool) -> Part {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corners = corners.map(|(x, y)| DVec3::new(100.0 * x, 100.0 * y, z));
+        let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+        let material = Material {
+            base_color,
+            alpha_mode,
+            double_sided,
+            ..Material::default()
+        };
+        Part::new("square", mesh, Some(Arc::new(material))).unwrap()
+    }
+
+    /// What one pixel shows, seen from `eye` along `look`.
+    fn pixel(parts: &[Part], eye: DVec3, look: DVec3) -> [u8; 3] {
+        let mut scenery = Scenery::new();
+        for part in parts {
+            scenery.add_plain(part).unwrap();
+        }
+        let size = PictureSize::new(1, 1).unwrap();
+        let projection = Projection::Pinhole {
+            vertical_fov_deg: 1.0,
+        };
+        let camera = Camera::new(size, projection, look).unwrap();
+        let options = PictureOptions {
+            samples: 1,
+            background: Color([0, 0, 255]),
+        };
+        let picture = scenery.picture(&camera, Viewpoint::Outside(eye), options, &|| ());
+        picture.pixel(0, 0)
+    }
+
+    #[test]
+    fn what_is_clear_lets_through_what_is_behind() {
+        let (red, green) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+        let of = |z, [r, g, b]: [f32; 3], opacity, mode| square(z, [r, g, b, opacity], mode, true);
+        let seen = |parts: &[Part]| pixel(parts, DVec3::Z, DVec3::NEG_Z);
+        let half = |parts: &[Part]| {
+            let linear = Color(seen(parts)).linear();
+            linear.map(|channel| (channel * 100.0).round())
+        };
+        let back = of(-9.0, green, 1.0, AlphaMode::Opaque);
+        assert_eq!(seen(&[]), [0, 0, 255]);
+        assert_eq!(seen(&[back.clone()]), [0, 255, 0]);
+        let pane = of(-3.0, red, 0.5, AlphaMode::Blend);
+        assert_eq!(half(&[back.clone(), pane.clone()]), [50.0, 50.0, 0.0]);
+        assert_eq!(half(&[pane]), [50.0, 0.0, 50.0]);
+        let hole = of(-3.0, red, 0.4, AlphaMode::Mask(0.5));
+        assert_eq!(seen(&[hole, back.clone()]), [0, 255, 0]);
+        let no_hole = of(-3.0, red, 0.6, AlphaMode::Mask(0.5));
+        assert_eq!(seen(&[no_hole, back]), [255, 0, 0]);
+    }
+
+    #[test]
+    fn backs_are_there_only_where_the_material_says_so() {
+        let white = [1.0; 4];
+        let behind = |double_sided| {
+            let part = square(0.0, white, AlphaMode::Opaque, double_sided);
+            pixel(&[part], DVec3::NEG_Z, DVec3::Z)
+        };
+        assert_eq!(behind(true), [255; 3]);
+        assert_eq!(behind(false), [0, 0, 255]);
+    }
+
+    #[test]
+    fn the_lamp_is_at_the_eye() {
+        let part = square(0.0, [1.0; 4], AlphaMode::Opaque, true);
+        let look = DVec3::new(3.0, 0.0, -4.0);
+        let [level, ..] = Color(pixel(&[part], -look, look)).linear();
+        // A cosine of 0.8, to half a step of 8 bits.
+        assert!(
+            (level - (AMBIENT + (1.0 - AMBIENT) * 0.8)).abs() < 0.005,
+            "{level}"
+        );
+    }
 }
