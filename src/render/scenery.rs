@@ -451,7 +451,7 @@ mod tests {
         };
         let back = of(-9.0, green, 1.0, AlphaMode::Opaque);
         assert_eq!(seen(&[]), [0, 0, 255]);
-        assert_eq!(seen(&[back.clone()]), [0, 255, 0]);
+        assert_eq!(seen(std::slice::from_ref(&back)), [0, 255, 0]);
         let pane = of(-3.0, red, 0.5, AlphaMode::Blend);
         assert_eq!(half(&[back.clone(), pane.clone()]), [50.0, 50.0, 0.0]);
         assert_eq!(half(&[pane]), [50.0, 0.0, 50.0]);
