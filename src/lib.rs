@@ -21,6 +21,7 @@ mod io;
 mod light_cone;
 mod mesh;
 mod photosurface;
+mod render;
 mod scene;
 mod spacetime;
 mod tessellate;
@@ -41,6 +42,10 @@ pub use mesh::{
 };
 pub use photosurface::{
     Facts, Photosurface, Prediction, SceneFacts, Stage, VertexData, Wanted, step_label,
+};
+pub use render::{
+    Camera, CameraError, MAX_PICTURE_SIDE, Picture, PictureOptions, PictureSize, Projection,
+    RenderError, Scenery, Viewpoint,
 };
 pub use scene::{
     Attribute, Attributes, BUILT_IN_SCENES, BuiltInScene, InvalidScene, Object, Observer, Scene,

@@ -651,3 +651,101 @@ fn help_names_every_command_and_the_units() {
         assert!(run.stdout_text().contains(word), "{word}\n{run}");
     }
 }
+
+/// Width and height that a PNG says, and whether it is one.
+fn png_size(bytes: &[u8]) -> (u32, u32) {
+    assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"));
+    let number = |at: usize| {
+        bytes[at..at + 4]
+            .iter()
+            .fold(0, |n, &b| n << 8 | u32::from(b))
+    };
+    (number(16), number(20))
+}
+
+#[test]
+fn every_built_in_scene_is_rendered_by_both_methods_and_from_outside() {
+    let workplace = Workplace::new();
+    for name in ["sphere", "cube", "lattice", "street", "snapshot"] {
+        for how in ["", "--method mesh", "--view outside", "--full-sky"] {
+            let line =
+                format!("render --example {name} {how} --steps 0 --size 32x18 -o {name}.png");
+            let run = workplace.run(&line).success();
+            assert!(run.stdout.is_empty(), "{run}");
+            let picture = workplace.read(&format!("{name}.png"));
+            assert_eq!(png_size(&picture), (32, 18), "{run}");
+        }
+    }
+}
+
+#[test]
+fn a_picture_for_each_step_or_one_for_stdout() {
+    let workplace = with_ball();
+    let line = "render ball.json --size 16x9 --steps 0,1,2";
+    workplace.run(line).success();
+    let pictures = ["0", "1", "2"].map(|k| format!("ball_observer_step00{k}.png"));
+    for picture in &pictures {
+        assert_eq!(png_size(&workplace.read(picture)), (16, 9));
+    }
+    assert_ne!(workplace.read(&pictures[0]), workplace.read(&pictures[2]));
+    let run = workplace.run("render ball.json --size 16x9 -o -").success();
+    assert_eq!(run.stdout, workplace.read(&pictures[0]));
+    workplace
+        .run(&format!("{line} -o -"))
+        .error(&["3 steps", "--steps"]);
+}
+
+#[test]
+fn every_flag_of_a_picture_changes_it() {
+    let workplace = with_ball();
+    let picture = |flags: &str| {
+        let line = format!("render ball.json --size 32x18 {flags} -o -");
+        workplace.run(&line).success().stdout
+    };
+    let plain = picture("");
+    for flags in [
+        "--fov 30",
+        "--look 0,1,0.1",
+        "--target 0,1,0.1",
+        "--samples 1",
+        "--background #ffffff",
+        "--full-sky",
+        "--view outside",
+        "--method mesh --no-subdivide --beta 0.99",
+    ] {
+        assert_ne!(picture(flags), plain, "{flags}");
+    }
+    let outside = picture("--view outside");
+    for flags in ["--from 0,0,20", "--target 0,3,0", "--look 0,0,-1"] {
+        assert_ne!(
+            picture(&format!("--view outside {flags}")),
+            outside,
+            "{flags}"
+        );
+    }
+}
+
+#[test]
+fn pictures_that_make_no_sense_are_refused_before_any_work() {
+    let workplace = with_ball();
+    for (flags, words) in [
+        ("--view outside --method rays", vec!["--method mesh"]),
+        ("--from 1,2,3", vec!["--view outside"]),
+        ("--size 0x9", vec!["0 x 9", "16384"]),
+        ("--fov 180", vec!["180", "less than 180"]),
+        ("--look 0,0,0", vec!["not zero"]),
+        ("--background red", vec!["#rrggbb"]),
+        ("--lod 1e-2,1e-3", vec!["--lod"]),
+        ("-o ball.jpg", vec![".png"]),
+    ] {
+        workplace
+            .run(&format!("render ball.json {flags}"))
+            .error(&words);
+    }
+    assert_eq!(workplace.files(), ["ball.json", "square.obj"]);
+    let mesh =
+        "render ball.json --size 16x9 --method mesh --no-subdivide --tolerance 1e-9 -o m.png";
+    let run = workplace.run(mesh);
+    assert_eq!(run.status, 1, "{run}");
+    assert_eq!(png_size(&workplace.read("m.png")), (16, 9));
+}

@@ -7,6 +7,8 @@ mod example;
 mod export;
 mod input;
 mod messages;
+mod output;
+mod render;
 mod schema;
 
 use std::process::ExitCode;
@@ -48,6 +50,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Export(export::ExportArgs),
+    Render(render::RenderArgs),
     Check(check::CheckArgs),
     Example(example::ExampleArgs),
     Schema(schema::SchemaArgs),
@@ -66,6 +69,7 @@ pub(crate) fn run() -> ExitCode {
     });
     let done = match cli.command {
         Command::Export(args) => export::run(&args),
+        Command::Render(args) => render::run(&args),
         Command::Check(args) => check::run(&args).map(|()| Status::Done),
         Command::Example(args) => example::run(&args).map(|()| Status::Done),
         Command::Schema(args) => schema::run(&args).map(|()| Status::Done),
