@@ -122,6 +122,15 @@ struct File {
     binary: Vec<u8>,
 }
 
+/// What one channel of the animation says.
+struct Track {
+    node: usize,
+    path: String,
+    interpolation: String,
+    times: Vec<f32>,
+    values: Vec<f32>,
+}
+
 impl File {
     fn export(workplace: &Workplace, flags: &str) -> Self {
         workplace.write("scene.json", SCENE);
@@ -131,7 +140,8 @@ impl File {
             ))
             .success();
         let bytes = workplace.read("out.glb");
-        let json_length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+        let json_length =
+            u32::from_le_bytes(bytes[12..16].try_into().expect("as glTF has it")) as usize;
         Self {
             json: glb_json(&bytes),
             binary: bytes[28 + json_length..].to_vec(),
@@ -147,31 +157,30 @@ impl File {
             Some("VEC3") => 3,
             other => panic!("{other:?}"),
         };
-        let view = &self.json["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
+        let view = &self.json["bufferViews"]
+            [accessor["bufferView"].as_u64().expect("as glTF has it") as usize];
         let start = view["byteOffset"].as_u64().unwrap_or(0) as usize;
-        let length = 4 * components * accessor["count"].as_u64().unwrap() as usize;
+        let length = 4 * components * accessor["count"].as_u64().expect("as glTF has it") as usize;
         let numbers = self.binary[start..start + length].chunks_exact(4);
         numbers
-            .map(|b| f32::from_le_bytes(b.try_into().unwrap()))
+            .map(|b| f32::from_le_bytes(b.try_into().expect("as glTF has it")))
             .collect()
     }
 
-    /// What each track says: node, path, interpolation, times, values.
-    fn tracks(&self) -> Vec<(usize, String, String, Vec<f32>, Vec<f32>)> {
+    fn tracks(&self) -> Vec<Track> {
         let animation = &self.json["animations"][0];
         let channels = animation["channels"].as_array().expect("channels").iter();
         let track = |channel: &Value| {
-            let sampler = &animation["samplers"][channel["sampler"].as_u64().unwrap() as usize];
-            (
-                channel["target"]["node"].as_u64().unwrap() as usize,
-                channel["target"]["path"].as_str().unwrap().to_owned(),
-                sampler["interpolation"]
-                    .as_str()
-                    .unwrap_or("LINEAR")
-                    .to_owned(),
-                self.numbers(&sampler["input"]),
-                self.numbers(&sampler["output"]),
-            )
+            let sampler = &animation["samplers"]
+                [channel["sampler"].as_u64().expect("as glTF has it") as usize];
+            let word = |word: &Value| word.as_str().map(str::to_owned);
+            Track {
+                node: channel["target"]["node"].as_u64().expect("an index") as usize,
+                path: word(&channel["target"]["path"]).expect("a path"),
+                interpolation: word(&sampler["interpolation"]).unwrap_or("LINEAR".to_owned()),
+                times: self.numbers(&sampler["input"]),
+                values: self.numbers(&sampler["output"]),
+            }
         };
         channels.map(track).collect()
     }
@@ -190,15 +199,15 @@ fn each_frame_shows_its_step_alone() {
         let now = frame as f32 / 10.0 + 0.01;
         let shown: BTreeSet<&str> = tracks
             .iter()
-            .filter(|(_, path, interpolation, times, values)| {
-                assert_eq!((path.as_str(), interpolation.as_str()), ("scale", "STEP"));
-                assert_eq!(times[0], if values[0] == 0.0 { 0.0 } else { times[0] });
-                let key = times.iter().rposition(|time| *time <= now).unwrap_or(0);
-                let scale = &values[3 * key..3 * key + 3];
+            .filter(|track| {
+                let (path, how) = (track.path.as_str(), track.interpolation.as_str());
+                assert_eq!((path, how), ("scale", "STEP"));
+                let key = track.times.iter().rposition(|time| *time <= now);
+                let scale = &track.values[3 * key.unwrap_or(0)..][..3];
                 assert!(scale == [0.0; 3] || scale == [1.0; 3]);
                 scale[0] == 1.0
             })
-            .map(|(node, ..)| nodes[*node]["name"].as_str().unwrap())
+            .map(|track| nodes[track.node]["name"].as_str().unwrap())
             .collect();
         let expected = ["ball", "wall", "rod"].map(|name| format!("{name}_step00{frame}"));
         assert_eq!(
@@ -278,16 +287,14 @@ fn morph_targets_add_up_to_each_step() {
             }
         }
     }
-    for (_, path, interpolation, times, weights) in file.tracks() {
-        assert_eq!(
-            (path.as_str(), interpolation.as_str()),
-            ("weights", "LINEAR")
-        );
+    for track in file.tracks() {
+        let (path, how) = (track.path.as_str(), track.interpolation.as_str());
+        assert_eq!((path, how), ("weights", "LINEAR"));
         let frames: Vec<f32> = (0..5)
             .map(|frame| (f64::from(frame) / 24.0) as f32)
             .collect();
-        assert_eq!(times, frames);
-        for (frame, weights) in weights.chunks_exact(4).enumerate() {
+        assert_eq!(track.times, frames);
+        for (frame, weights) in track.values.chunks_exact(4).enumerate() {
             let expected = [1, 2, 3, 4].map(|target| f32::from(u8::from(target == frame)));
             assert_eq!(weights, expected);
         }
