@@ -26,7 +26,7 @@ mod scene;
 mod spacetime;
 mod tessellate;
 
-pub use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec4};
+pub use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4, Vec2, Vec4};
 
 pub use io::{
     AccessorProblem, DocumentProblem, Export, FileFindings, Findings, Format, LoadError,
@@ -45,7 +45,7 @@ pub use photosurface::{
 };
 pub use render::{
     Camera, CameraError, MAX_PICTURE_SIDE, Picture, PictureOptions, PictureSize, Projection,
-    RenderError, Scenery, Viewpoint,
+    RenderError, Scenery, Strokes, Viewpoint, lettering, lettering_width,
 };
 pub use scene::{
     Attribute, Attributes, BUILT_IN_SCENES, BuiltInScene, InvalidScene, Object, Observer, Scene,

@@ -25,6 +25,7 @@ use common::{Random, Worst};
 const BARE: PictureOptions = PictureOptions {
     samples: 1,
     background: Color([0; 3]),
+    wireframe: None,
 };
 
 fn stage(scene: &Value, tolerance: Tolerance) -> Stage {

@@ -2,14 +2,17 @@
 
 mod accuracy;
 mod args;
+mod camera;
 mod check;
 mod example;
 mod export;
+mod guides;
 mod input;
 mod messages;
 mod output;
 mod render;
 mod schema;
+mod studio;
 
 use std::process::ExitCode;
 

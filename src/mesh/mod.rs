@@ -1,5 +1,6 @@
 //! Triangle meshes at rest: geometry, the attributes that travel with it, and what it is made of.
 
+mod edges;
 mod material;
 mod part;
 mod shape;

@@ -8,13 +8,17 @@
 mod camera;
 mod caster;
 mod cone;
+mod lettering;
 mod paint;
 mod picture;
 mod scenery;
 mod sight;
 mod sphere;
+mod stroke;
 
 pub use camera::{Camera, CameraError, MAX_PICTURE_SIDE, PictureSize, Projection};
+pub use lettering::{lettering, lettering_width};
 pub use paint::RenderError;
 pub use picture::Picture;
 pub use scenery::{PictureOptions, Scenery, Viewpoint};
+pub use stroke::Strokes;

@@ -43,6 +43,17 @@ struct Placed {
 }
 
 impl Paint {
+    /// White on both sides: what has no material, also in the files that are written of it.
+    pub(super) fn plain() -> Self {
+        Self {
+            base_color: Vec4::ONE,
+            texture: None,
+            alpha_mode: AlphaMode::Opaque,
+            double_sided: true,
+            unlit: false,
+        }
+    }
+
     /// The paint of `object`'s material.
     ///
     /// # Errors
@@ -50,14 +61,7 @@ impl Paint {
     /// A texture that is neither PNG nor JPEG.
     pub(super) fn new(material: Option<&Arc<Material>>, object: &str) -> Result<Self, RenderError> {
         let Some(material) = material else {
-            return Ok(Self {
-                base_color: Vec4::ONE,
-                texture: None,
-                alpha_mode: AlphaMode::Opaque,
-                // As in the files written of it.
-                double_sided: true,
-                unlit: false,
-            });
+            return Ok(Self::plain());
         };
         let texture = material.base_color_texture().map(|(texture, set)| {
             let (transform, other_set) = material.base_color_transform();

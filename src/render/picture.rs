@@ -7,6 +7,7 @@ use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 
 use super::PictureSize;
+use crate::mesh::Color;
 
 /// Red, green and blue in sRGB, one byte each, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,6 +24,23 @@ impl Picture {
             3 * size.width() as usize * size.height() as usize
         );
         Self { size, bytes }
+    }
+
+    /// A picture of one colour.
+    pub fn filled(size: PictureSize, color: Color) -> Self {
+        let pixels = size.width() as usize * size.height() as usize;
+        Self::new(size, color.0.repeat(pixels))
+    }
+
+    /// Lays another picture on this one, its upper left corner at `x`, `y`; what is beyond an edge is cut off.
+    pub fn paste(&mut self, other: &Picture, x: u32, y: u32) {
+        let (width, height) = (self.size.width(), self.size.height());
+        let columns = other.size.width().min(width.saturating_sub(x)) as usize;
+        let rows = other.bytes.chunks_exact(3 * other.size.width() as usize);
+        for (row, y) in rows.zip(y..height) {
+            let start = 3 * (y as usize * width as usize + x as usize);
+            self.bytes[start..start + 3 * columns].copy_from_slice(&row[..3 * columns]);
+        }
     }
 
     /// Width and height.
@@ -44,6 +62,11 @@ impl Picture {
         assert!(x < self.size.width() && y < self.size.height());
         let start = 3 * (y as usize * self.size.width() as usize + x as usize);
         [0, 1, 2].map(|channel| self.bytes[start + channel])
+    }
+
+    /// All pixels, row by row from the top.
+    pub(super) fn pixels_mut(&mut self) -> impl Iterator<Item = &mut [u8; 3]> {
+        self.bytes.as_chunks_mut().0.iter_mut()
     }
 
     /// Writes the picture as PNG.
@@ -82,7 +105,6 @@ pub(super) fn encoded(linear: Vec3) -> [u8; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Color;
 
     #[test]
     fn colours_are_encoded_as_they_were_decoded() {
@@ -91,6 +113,19 @@ mod tests {
             assert_eq!(encoded(linear.into()), [byte, 255 - byte, byte / 2]);
         }
         assert_eq!(encoded(Vec3::new(7.0, -1.0, 1.0)), [255, 0, 255]);
+    }
+
+    #[test]
+    fn pictures_are_laid_on_each_other() {
+        let of = |width, height, level| {
+            Picture::filled(PictureSize::new(width, height).unwrap(), Color([level; 3]))
+        };
+        let mut sheet = of(4, 3, 0);
+        sheet.paste(&of(2, 2, 1), 1, 0);
+        sheet.paste(&of(5, 5, 2), 3, 2);
+        sheet.paste(&of(1, 1, 3), 9, 9);
+        let levels: Vec<_> = sheet.bytes().chunks(3).map(|pixel| pixel[0]).collect();
+        assert_eq!(levels, [0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 2]);
     }
 
     #[test]

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use rayon::prelude::*;
 
-use super::Camera;
 use super::caster::{Caster, MeshHit, Ray};
 use super::cone::Cone;
 use super::paint::{Paint, RenderError};
 use super::picture::{Picture, encoded};
 use super::sight::Sight;
 use super::sphere::Ball;
+use super::{Camera, Strokes};
 use crate::mesh::{Color, Material, Mesh, Part, Shape};
 use crate::scene::{Object, Source};
 use crate::spacetime::{WorldLine, unit};
@@ -32,12 +32,21 @@ const FACETS: f64 = 1e-4;
 /// What is too faint to see: half a step of 8 bits, squared.
 const OPAQUE: f32 = 1.0 / (510.0 * 510.0);
 
+/// How opaque a ghost is where it is seen head-on, and how much more at its rim.
+const GHOST: [f32; 2] = [0.1, 0.6];
+
+/// How much of a ghost is seen through what is in front of it.
+const GHOST_BEHIND: f32 = 0.5;
+
+/// Half the width of the edges of triangles, in pixels.
+const HALF_WIRE: f64 = 0.6;
+
 /// Things to take pictures of.
 ///
 /// Three kinds: objects *at rest* in their own frames, which an observer sees by their light (the method of
 /// rays); *photosurfaces*, mapped already, which the same observer sees as they stand (the method of
 /// meshes); and *plain* things in the observer's frame, with no light to travel. From outside all are drawn as
-/// they stand.
+/// they stand. Plain things can be *ghosts* too: seen through, and through what is in front of them.
 ///
 /// # Shading
 ///
@@ -81,6 +90,8 @@ const OPAQUE: f32 = 1.0 / (510.0 * 510.0);
 #[derive(Default)]
 pub struct Scenery {
     bodies: Vec<Body>,
+    /// Each with its linear colour.
+    ghosts: Vec<(Body, Vec3)>,
 }
 
 /// Where the picture is taken.
@@ -99,6 +110,8 @@ pub struct PictureOptions {
     pub samples: u32,
     /// What is seen where nothing is.
     pub background: Color,
+    /// The colour in which the edges of all triangles are drawn, if they are.
+    pub wireframe: Option<Color>,
 }
 
 impl Default for PictureOptions {
@@ -107,6 +120,7 @@ impl Default for PictureOptions {
         Self {
             samples: 3,
             background: Color([0x14, 0x17, 0x1c]),
+            wireframe: None,
         }
     }
 }
@@ -163,6 +177,8 @@ struct Meeting<'a> {
     brightness: f32,
     texture: DVec2,
     vertex_color: Vec4,
+    /// The corners of the triangle, as they are seen, where wires are wanted.
+    triangle: Option<[DVec3; 3]>,
 }
 
 impl Scenery {
@@ -227,6 +243,17 @@ impl Scenery {
         self.add(geometry, part.material.as_ref(), &part.name, Stands::Plain)
     }
 
+    /// Adds a thing that stands in the observer's frame and is only hinted at, in one colour.
+    pub fn add_ghost(&mut self, mesh: Mesh, color: Color) {
+        let paint = Paint::plain();
+        let body = Body {
+            geometry: Geometry::Mesh(Caster::new(mesh)),
+            paint,
+            stands: Stands::Plain,
+        };
+        self.ghosts.push((body, color.linear().into()));
+    }
+
     fn add(
         &mut self,
         geometry: Geometry,
@@ -253,18 +280,18 @@ impl Scenery {
         options: PictureOptions,
         row_done: &(dyn Fn() + Sync),
     ) -> Picture {
-        let eye = match viewpoint {
-            Viewpoint::Observer(..) => DVec3::ZERO,
-            Viewpoint::Outside(place) => place,
+        let eye = viewpoint.eye();
+        let look = Look {
+            eye,
+            sitters: sitters(self.bodies.iter(), viewpoint),
+            ghosts: sitters(self.ghosts.iter().map(|(body, _)| body), viewpoint),
+            ghost_colors: self.ghosts.iter().map(|&(_, color)| color).collect(),
+            background: options.background.linear().into(),
+            wires: options
+                .wireframe
+                .map(|color| (color.linear().into(), camera)),
         };
-        let sitters: Vec<_> = self
-            .bodies
-            .iter()
-            .map(|body| Sitter::new(body, eye, viewpoint))
-            .collect();
         let samples = options.samples.max(1);
-        let background = Vec3::from(options.background.linear());
-        let sample = |place: DVec2| light(&sitters, eye, camera.direction(place), background);
         let size = camera.size();
         let mut bytes = vec![0; 3 * size.width() as usize * size.height() as usize];
         let rows = bytes.par_chunks_mut(3 * size.width() as usize);
@@ -274,7 +301,8 @@ impl Scenery {
                 let mut sum = Vec3::ZERO;
                 for part in 0..samples * samples {
                     let inside = DVec2::new((part % samples).into(), (part / samples).into());
-                    sum += sample(corner + (inside + 0.5) / f64::from(samples));
+                    let place = corner + (inside + 0.5) / f64::from(samples);
+                    sum += look.light(place, camera.direction(place));
                 }
                 pixel.copy_from_slice(&encoded(sum / (samples * samples) as f32));
             }
@@ -282,35 +310,132 @@ impl Scenery {
         });
         Picture::new(size, bytes)
     }
+
+    /// Draws lines that stand in the observer's frame onto a picture that `camera` took; what is behind
+    /// something is faint.
+    pub fn draw(
+        &self,
+        picture: &mut Picture,
+        camera: &Camera,
+        viewpoint: Viewpoint,
+        strokes: &Strokes<DVec3>,
+    ) {
+        let eye = viewpoint.eye();
+        let sitters = sitters(self.bodies.iter(), viewpoint);
+        let hidden = |seen, distance| nearest(&sitters, eye, seen, 0.0, distance, false).is_some();
+        picture.draw_in_space(strokes, camera, eye, hidden);
+    }
 }
 
-/// The linear colour that is seen in one direction.
-fn light(sitters: &[Sitter], eye: DVec3, seen: DVec3, background: Vec3) -> Vec3 {
-    let mut light = Vec3::ZERO;
-    let mut clearness = 1.0;
-    let mut beyond = 0.0;
-    for _ in 0..MOST_LAYERS {
-        let nearest = sitters
-            .iter()
-            .fold(None, |nearest: Option<Meeting>, sitter| {
-                let limit = nearest
-                    .as_ref()
-                    .map_or(f64::MAX, |nearest| nearest.distance);
-                sitter.meeting(eye, seen, beyond, limit).or(nearest)
-            });
-        let Some(meeting) = nearest else {
-            return light + background * clearness;
-        };
-        let Meeting { paint, texture, .. } = meeting;
-        let (color, opacity) = paint.color_at(texture, meeting.vertex_color);
-        light += color * (meeting.brightness * opacity * clearness);
-        clearness *= 1.0 - opacity;
-        if clearness < OPAQUE {
-            break;
+impl Viewpoint<'_> {
+    fn eye(&self) -> DVec3 {
+        match *self {
+            Viewpoint::Observer(..) => DVec3::ZERO,
+            Viewpoint::Outside(place) => place,
         }
-        beyond = meeting.distance * STEP_BEHIND;
     }
-    light
+}
+
+fn sitters<'a>(bodies: impl Iterator<Item = &'a Body>, viewpoint: Viewpoint) -> Vec<Sitter<'a>> {
+    let eye = viewpoint.eye();
+    bodies
+        .map(|body| Sitter::new(body, eye, viewpoint))
+        .collect()
+}
+
+/// All that decides on the colour of a direction.
+struct Look<'a> {
+    eye: DVec3,
+    sitters: Vec<Sitter<'a>>,
+    ghosts: Vec<Sitter<'a>>,
+    ghost_colors: Vec<Vec3>,
+    background: Vec3,
+    /// The colour of wires, and how they come to be on the picture.
+    wires: Option<(Vec3, &'a Camera)>,
+}
+
+impl Look<'_> {
+    /// The linear colour that is seen at a place of the picture, in the direction `seen`.
+    fn light(&self, place: DVec2, seen: DVec3) -> Vec3 {
+        let (mut light, distance) = self.solid_light(place, seen);
+        for (ghost, color) in self.ghosts.iter().zip(&self.ghost_colors) {
+            if let Some(meeting) = ghost.meeting(self.eye, seen, 0.0, f64::MAX, false) {
+                let grazing = (1.0 - meeting.brightness) / (1.0 - AMBIENT);
+                let opacity = GHOST[0] + GHOST[1] * grazing * grazing;
+                let behind = meeting.distance > distance;
+                let veiled = if behind { GHOST_BEHIND } else { 1.0 };
+                light = light.lerp(*color, opacity * veiled);
+            }
+        }
+        light
+    }
+
+    /// Without ghosts, and how far away the first surface is.
+    fn solid_light(&self, place: DVec2, seen: DVec3) -> (Vec3, f64) {
+        let mut light = Vec3::ZERO;
+        let mut clearness = 1.0;
+        let mut beyond = 0.0;
+        let mut first = f64::MAX;
+        for _ in 0..MOST_LAYERS {
+            let nearest = nearest(
+                &self.sitters,
+                self.eye,
+                seen,
+                beyond,
+                f64::MAX,
+                self.wires.is_some(),
+            );
+            let Some(meeting) = nearest else {
+                return (light + self.background * clearness, first);
+            };
+            let Meeting { paint, texture, .. } = meeting;
+            let (mut color, mut opacity) = paint.color_at(texture, meeting.vertex_color);
+            if let (Some((wire, camera)), Some(triangle)) = (self.wires, meeting.triangle)
+                && is_on_edge(camera, triangle.map(|corner| corner - self.eye), place)
+            {
+                (color, opacity) = (wire, 1.0);
+            }
+            if opacity > 0.0 {
+                first = first.min(meeting.distance);
+            }
+            light += color * (meeting.brightness * opacity * clearness);
+            clearness *= 1.0 - opacity;
+            if clearness < OPAQUE {
+                break;
+            }
+            beyond = meeting.distance * STEP_BEHIND;
+        }
+        (light, first)
+    }
+}
+
+/// The first thing that a ray meets, farther than `beyond` and not as far as `limit`.
+fn nearest<'a>(
+    sitters: &[Sitter<'a>],
+    eye: DVec3,
+    seen: DVec3,
+    beyond: f64,
+    limit: f64,
+    wires: bool,
+) -> Option<Meeting<'a>> {
+    sitters
+        .iter()
+        .fold(None, |nearest: Option<Meeting>, sitter| {
+            let limit = nearest.as_ref().map_or(limit, |nearest| nearest.distance);
+            sitter.meeting(eye, seen, beyond, limit, wires).or(nearest)
+        })
+}
+
+/// Whether a place of the picture is on an edge of a triangle, given by its corners from the eye.
+fn is_on_edge(camera: &Camera, corners: [DVec3; 3], place: DVec2) -> bool {
+    let [Some(a), Some(b), Some(c)] = corners.map(|corner| camera.place(corner)) else {
+        return false;
+    };
+    [[a, b], [b, c], [c, a]].into_iter().any(|[start, end]| {
+        let along = end - start;
+        let part = (place - start).dot(along) / along.length_squared();
+        place.distance(start.lerp(end, part.clamp(0.0, 1.0))) < HALF_WIRE
+    })
 }
 
 impl<'a> Sitter<'a> {
@@ -332,7 +457,14 @@ impl<'a> Sitter<'a> {
 
     /// Where the ray from `eye` along `seen` meets it, farther than `beyond` and not as far as `limit`, both as
     /// seen.
-    fn meeting(&self, eye: DVec3, seen: DVec3, beyond: f64, limit: f64) -> Option<Meeting<'a>> {
+    fn meeting(
+        &self,
+        eye: DVec3,
+        seen: DVec3,
+        beyond: f64,
+        limit: f64,
+        wires: bool,
+    ) -> Option<Meeting<'a>> {
         if !self.cone.may_hold(seen) {
             return None;
         }
@@ -345,11 +477,17 @@ impl<'a> Sitter<'a> {
         };
         let [beyond, limit] = [beyond, limit].map(|seen| (seen * stretch).min(f64::MAX));
         let paint = &self.body.paint;
+        let mut triangle = None;
         let (distance, normal, texture, vertex_color) = match &self.body.geometry {
             Geometry::Mesh(caster) => {
                 let ray = Ray::new(origin, direction);
                 let hit = caster.cast(&ray, beyond, limit, paint.double_sided)?;
                 let (normal, texture, color) = attributes(caster.mesh(), paint, &hit);
+                // Those of a mesh at rest are seen elsewhere.
+                if wires && !matches!(self.body.stands, Stands::AtRest(_)) {
+                    let place = |corner: u32| caster.mesh().positions()[corner as usize];
+                    triangle = Some(hit.corners.map(place));
+                }
                 (hit.distance, normal, texture, color)
             }
             Geometry::Ball(ball) => {
@@ -374,6 +512,7 @@ impl<'a> Sitter<'a> {
             },
             texture,
             vertex_color,
+            triangle,
         })
     }
 }
@@ -440,6 +579,7 @@ mod tests {
         let options = PictureOptions {
             samples: 1,
             background: Color([0, 0, 255]),
+            wireframe: None,
         };
         let picture = scenery.picture(&camera, Viewpoint::Outside(eye), options, &|| ());
         picture.pixel(0, 0)
