@@ -1,6 +1,6 @@
 //! Pictures: rays of light against the photosurface, and both against closed forms.
 //!
-//! All pictures here are of things in plain colours, one ray a pixel, so that every pixel is one thing or
+//! All pictures here are of things in one or two full colours, one ray a pixel, so that every pixel is one thing or
 //! another.
 
 #![allow(
@@ -143,6 +143,15 @@ fn scenes() -> Vec<(&'static str, Value, DVec3, f64)> {
             18.0,
         ),
         (
+            "textured",
+            json!({ "observer": { "velocity": { "beta": 0.8, "direction": [-1, 0, 0] } }, "objects": [
+                { "name": "cube", "shape": { "box": { "size": [2, 2, 2] } }, "color": "#ff0000", "checker": "#0000ff",
+                  "rotation": [0.1, 0.3, 0, 0.9486833], "position": [4.8, 0.5, -6] },
+            ]}),
+            DVec3::new(0.0, 0.07, -1.0),
+            24.0,
+        ),
+        (
             "two objects",
             json!({ "observer": { "velocity": { "beta": 0.5, "direction": [0, 1, -1] } }, "objects": [
                 { "name": "sphere", "shape": { "sphere": { "radius": 1 } }, "color": "#ff0000",
@@ -163,7 +172,8 @@ fn scenes() -> Vec<(&'static str, Value, DVec3, f64)> {
 /// A point of the mesh is seen at most the angle `delta` from the point of the true surface that it stands for, as
 /// its certificate says: `delta` in pixels is that angle times the pixels a radian has in the corner of a
 /// pinhole picture, where it has most. So a pixel that differs has its middle within `delta` of an
-/// outline. An outline of length `L` pixels has the area `2 delta L` around it, and `pi delta^2` at ends: as many
+/// outline, of the thing or of a field of its checker: a point of the mesh has the texture of the point that it
+/// stands for. An outline of length `L` pixels has the area `2 delta L` around it, and `pi delta^2` at ends: as many
 /// pixel middles lie there on average over all places of the grid of pixels, and on one grid not more by
 /// chance than four standard deviations of as many independent events. `L` is not longer than the
 /// number of steps along rows and columns that follow it.
@@ -392,7 +402,7 @@ fn rays_and_photosurfaces_are_shaded_alike() {
 
 #[test]
 fn pictures_are_the_same_for_any_number_of_threads() {
-    let (_, scene, look, fov) = scenes().remove(3);
+    let (_, scene, look, fov) = scenes().remove(4);
     let camera = pinhole(160, 120, fov, look);
     let stage = stage(&scene, Tolerance::default());
     let with = |threads| {
@@ -405,7 +415,7 @@ fn pictures_are_the_same_for_any_number_of_threads() {
 /// Surfaces in front hide those behind, whatever their speeds: the two objects overlap in the picture.
 #[test]
 fn what_is_seen_nearer_hides_what_is_farther() {
-    let (_, scene, look, fov) = scenes().remove(3);
+    let (_, scene, look, fov) = scenes().remove(4);
     let camera = pinhole(320, 240, fov, look);
     let both = by_rays(&stage(&scene, Tolerance::default()), &camera);
     let alone = |number: usize| {

@@ -8,6 +8,7 @@ mod shape;
 pub use material::{AlphaMode, Image, Material, MaterialError, Texture, Wrap};
 pub(crate) use material::{clamp_factors, extension_names, map_sources, position, retain_textures};
 pub use part::{Model, Part};
+pub(crate) use shape::Band;
 pub use shape::{
     Appearance, Cells, Color, Cone, Count, Cuboid, Cylinder, Grid, Lattice, Length, Rod, Shape,
     ShapeError, Sphere, Torus,

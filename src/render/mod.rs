@@ -15,6 +15,7 @@ mod scenery;
 mod sight;
 mod sphere;
 mod stroke;
+mod turned;
 
 pub use camera::{Camera, CameraError, MAX_PICTURE_SIDE, PictureSize, Projection};
 pub use lettering::{lettering, lettering_width};

@@ -10,9 +10,10 @@ use super::cone::Cone;
 use super::paint::{Paint, RenderError};
 use super::picture::{Picture, encoded};
 use super::sight::Sight;
-use super::sphere::Ball;
+use super::sphere::{Ball, SmoothHit};
+use super::turned::Turned;
 use super::{Camera, Strokes};
-use crate::mesh::{Color, Material, Mesh, Part, Shape};
+use crate::mesh::{Appearance, Color, Material, Mesh, Part, Shape};
 use crate::scene::{Object, Source};
 use crate::spacetime::{WorldLine, unit};
 
@@ -36,7 +37,10 @@ const OPAQUE: f32 = 1.0 / (510.0 * 510.0);
 const GHOST: [f32; 2] = [0.1, 0.6];
 
 /// How much of a ghost is seen through what is in front of it.
-const GHOST_BEHIND: f32 = 0.5;
+const GHOST_BEHIND: f32 = 0.8;
+
+/// How opaque the edges of triangles are.
+const WIRE: f32 = 0.7;
 
 /// Half the width of the edges of triangles, in pixels.
 const HALF_WIRE: f64 = 0.6;
@@ -110,7 +114,7 @@ pub struct PictureOptions {
     pub samples: u32,
     /// What is seen where nothing is.
     pub background: Color,
-    /// The colour in which the edges of all triangles are drawn, if they are.
+    /// The colour in which the edges of the triangles of photosurfaces are drawn, if they are.
     pub wireframe: Option<Color>,
 }
 
@@ -134,6 +138,7 @@ struct Body {
 enum Geometry {
     Mesh(Caster),
     Ball(Ball),
+    Turned(Turned),
 }
 
 impl Geometry {
@@ -145,6 +150,7 @@ impl Geometry {
                 ((low + high) / 2.0, low.distance(high) / 2.0)
             }
             Self::Ball(ball) => ball.around(),
+            Self::Turned(turned) => turned.around(),
         }
     }
 }
@@ -189,8 +195,9 @@ impl Scenery {
 
     /// Adds a part of `object`, at rest, in the object's rest frame.
     ///
-    /// A sphere is met as the surface that it is, whatever facets its part has; other round shapes get facets
-    /// within a ten thousandth of their size, unless they have a resolution of their own.
+    /// Spheres, cylinders, rods and cones are met as the surfaces that they are, whatever facets their parts have. A torus
+    /// gets facets within a ten thousandth of its size, unless it has a resolution of its own: the
+    /// quartic of the true one is ill-conditioned wherever a ray grazes it.
     ///
     /// # Errors
     ///
@@ -200,17 +207,10 @@ impl Scenery {
             Source::Shape(Shape::Sphere(sphere), _) => {
                 Geometry::Ball(Ball::new(sphere.clone(), object.model_to_rest()))
             }
-            Source::Shape(shape, appearance) => {
-                let size = part
-                    .mesh()
-                    .bounds()
-                    .map_or(0.0, |(low, high)| low.distance(high));
-                let fine = shape.within(FACETS * size / object.scale.max_element());
-                let made = fine.model(appearance).ok();
-                let made = made.and_then(|mut model| model.parts.pop());
-                let made = made.map(|part| part.transformed(&object.model_to_rest()));
-                Geometry::Mesh(Caster::new(made.as_ref().unwrap_or(part).mesh().clone()))
-            }
+            Source::Shape(shape, appearance) => match shape.bands() {
+                Some(bands) => Geometry::Turned(Turned::new(bands, object.model_to_rest())),
+                None => Geometry::Mesh(Caster::new(fine_mesh(object, shape, appearance, part))),
+            },
             _ => Geometry::Mesh(Caster::new(part.mesh().clone())),
         };
         let stands = Stands::AtRest(object.world_line());
@@ -327,6 +327,19 @@ impl Scenery {
     }
 }
 
+/// The mesh of a part that a shape is, fine enough for pictures.
+fn fine_mesh(object: &Object, shape: &Shape, appearance: &Appearance, part: &Part) -> Mesh {
+    let size = part
+        .mesh()
+        .bounds()
+        .map_or(0.0, |(low, high)| low.distance(high));
+    let fine = shape.within(FACETS * size / object.scale.max_element());
+    let made = fine.model(appearance).ok();
+    let made = made.and_then(|mut model| model.parts.pop());
+    let made = made.map(|part| part.transformed(&object.model_to_rest()));
+    made.as_ref().unwrap_or(part).mesh().clone()
+}
+
 impl Viewpoint<'_> {
     fn eye(&self) -> DVec3 {
         match *self {
@@ -393,7 +406,8 @@ impl Look<'_> {
             if let (Some((wire, camera)), Some(triangle)) = (self.wires, meeting.triangle)
                 && is_on_edge(camera, triangle.map(|corner| corner - self.eye), place)
             {
-                (color, opacity) = (wire, 1.0);
+                // Not opaque: where triangles are smaller than pixels all would be wire.
+                (color, opacity) = (color.lerp(wire, WIRE), opacity.max(WIRE));
             }
             if opacity > 0.0 {
                 first = first.min(meeting.distance);
@@ -483,17 +497,14 @@ impl<'a> Sitter<'a> {
                 let ray = Ray::new(origin, direction);
                 let hit = caster.cast(&ray, beyond, limit, paint.double_sided)?;
                 let (normal, texture, color) = attributes(caster.mesh(), paint, &hit);
-                // Those of a mesh at rest are seen elsewhere.
-                if wires && !matches!(self.body.stands, Stands::AtRest(_)) {
+                if wires && matches!(self.body.stands, Stands::Mapped(_)) {
                     let place = |corner: u32| caster.mesh().positions()[corner as usize];
                     triangle = Some(hit.corners.map(place));
                 }
                 (hit.distance, normal, texture, color)
             }
-            Geometry::Ball(ball) => {
-                let hit = ball.cast(origin, direction, beyond, limit)?;
-                (hit.distance, hit.normal, hit.texture, Vec4::ONE)
-            }
+            Geometry::Ball(ball) => smooth(ball.cast(origin, direction, beyond, limit)?),
+            Geometry::Turned(turned) => smooth(turned.cast(origin, direction, beyond, limit)?),
         };
         let lit = match (&self.sight, self.body.stands) {
             (Some(sight), Stands::Mapped(_)) => sight
@@ -515,6 +526,11 @@ impl<'a> Sitter<'a> {
             triangle,
         })
     }
+}
+
+/// The same of a surface that has no corners.
+fn smooth(hit: SmoothHit) -> (f64, DVec3, DVec2, Vec4) {
+    (hit.distance, hit.normal, hit.texture, Vec4::ONE)
 }
 
 /// Normal, texture coordinates and colour between the corners of a triangle.

@@ -13,8 +13,8 @@ pub(super) struct Ball {
     around: (DVec3, f64),
 }
 
-/// Where a ray meets a [`Ball`].
-pub(super) struct BallHit {
+/// Where a ray meets a surface that has no facets.
+pub(super) struct SmoothHit {
     pub(super) distance: f64,
     /// Outwards, of any length.
     pub(super) normal: DVec3,
@@ -50,7 +50,7 @@ impl Ball {
         direction: DVec3,
         beyond: f64,
         limit: f64,
-    ) -> Option<BallHit> {
+    ) -> Option<SmoothHit> {
         let origin = self.to_model.transform_point3(origin);
         let direction = self.to_model.matrix3 * direction;
         let speed = direction.length();
@@ -75,7 +75,7 @@ impl Ball {
         }
         let place = origin + direction * distance;
         let model_to_rest_normals: DMat3 = self.to_model.matrix3.transpose();
-        Some(BallHit {
+        Some(SmoothHit {
             distance,
             normal: model_to_rest_normals * place,
             texture: self.shape.texture_at(place),

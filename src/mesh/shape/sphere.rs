@@ -136,7 +136,7 @@ fn from_north(direction: DVec3) -> f64 {
 }
 
 /// The part of a turn that [`direction_of_turn`] needs for this direction.
-fn turn(direction: DVec3) -> f64 {
+pub(super) fn turn(direction: DVec3) -> f64 {
     let turn = (-direction.x).atan2(-direction.z) / TAU;
     if turn < 0.0 { turn + 1.0 } else { turn }
 }
