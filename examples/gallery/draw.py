@@ -18,7 +18,7 @@ ROTATION = {
     "observer": {"velocity": {"beta": 0.8, "direction": [-1, 0, 0]}},
     "objects": [
         {"name": "cube", "shape": {"box": {"size": [2, 2, 2]}}, "color": "#f2f2e6", "checker": "#2471a3",
-         "position": [9.6, 0, -12]},
+         "position": [16, 0, -12]},
     ],
 }
 
