@@ -1,5 +1,7 @@
 //! Flags that say what a picture shows and from where, and cameras that frame everything.
 
+use std::f64::consts::PI;
+
 use anyhow::{Context, bail, ensure};
 use photosurface::{Camera, Color, DVec3, PictureSize, Projection, Stage, Wanted};
 
@@ -10,6 +12,10 @@ const FROM: DVec3 = DVec3::new(0.3, 0.3, 1.0);
 
 /// Room around what is framed.
 const FRAME: f64 = 1.08;
+
+/// Between this many directions there are about 20 degrees: what is round sticks out by less than 2 % of its radius
+/// between two places that are farthest out.
+const DIRECTIONS: usize = 128;
 
 /// A camera that frames something by itself is at least so narrow and at most so wide, in degrees.
 const FIELD: std::ops::RangeInclusive<f64> = 1.0..=100.0;
@@ -131,22 +137,21 @@ impl CameraArgs {
         f64::from(self.size().width()) / f64::from(self.size().height())
     }
 
-    /// The field of view of the observer at all steps, in degrees.
-    pub(super) fn observer_fov(&self, places: &[Vec<DVec3>]) -> f64 {
-        let framing = || {
-            let widest = places.iter().map(|places| {
-                let middle = middle_of_sky(places);
-                let angles = places.iter().map(|place| place.angle_between(middle));
-                angles.fold(0.0, f64::max)
-            });
-            let half = widest.fold(0.0, f64::max) * FRAME;
-            // The narrower side of the picture holds it.
-            let tan = half.min(1.5).tan() / self.aspect().min(1.0);
-            (2.0 * tan.atan().to_degrees()).clamp(*FIELD.start(), *FIELD.end())
-        };
+    /// The field of view of the observer at all steps, in degrees; `places` are those of each step.
+    pub(super) fn observer_fov(&self, places: impl Iterator<Item = Vec<DVec3>>) -> f64 {
         match self.fov {
             Some(fov) => fov,
-            None if self.sheet => framing(),
+            None if self.sheet => {
+                let widest = places.map(|places| {
+                    let middle = middle_of_sky(&places);
+                    let angles = places.iter().map(|place| place.angle_between(middle));
+                    angles.fold(0.0, f64::max)
+                });
+                let half = widest.fold(0.0, f64::max) * FRAME;
+                // The narrower side of the picture holds it.
+                let tan = half.min(1.5).tan() / self.aspect().min(1.0);
+                (2.0 * tan.atan().to_degrees()).clamp(*FIELD.start(), *FIELD.end())
+            }
             None => 60.0,
         }
     }
@@ -231,6 +236,25 @@ pub(super) fn rough_places(stage: &Stage, step: usize) -> Vec<DVec3> {
         .collect()
 }
 
+/// Those of many places that are farthest out, one for each of [`DIRECTIONS`] directions: what a frame needs of them.
+pub(super) fn outermost(places: Vec<DVec3>) -> Vec<DVec3> {
+    if places.len() <= DIRECTIONS {
+        return places;
+    }
+    let directions = (0..DIRECTIONS).map(|index| {
+        // Evenly over the sphere, along a spiral of the golden angle.
+        let height = (2.0 * index as f64 + 1.0) / DIRECTIONS as f64 - 1.0;
+        let (sin, cos) = (index as f64 * PI * (3.0 - 5f64.sqrt())).sin_cos();
+        let across = (1.0 - height * height).sqrt();
+        DVec3::new(across * cos, height, across * sin)
+    });
+    let farthest = |direction: DVec3| {
+        let by_distance = |a: &&DVec3, b: &&DVec3| a.dot(direction).total_cmp(&b.dot(direction));
+        places.iter().max_by(by_distance).copied()
+    };
+    directions.filter_map(farthest).collect()
+}
+
 /// `WxH`
 fn size(text: &str) -> anyhow::Result<PictureSize> {
     let (width, height) = text
@@ -252,6 +276,22 @@ fn color(text: &str) -> anyhow::Result<Color> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_outermost_stands_for_all() {
+        let angles = (0..5000).map(|k| f64::from(k) * 2.399_963);
+        let ball: Vec<_> = angles
+            .map(|angle| DVec3::new(angle.cos(), (0.01 * angle).sin(), angle.sin()).normalize())
+            .collect();
+        let outer = outermost(ball.clone());
+        assert!(outer.len() <= DIRECTIONS && outer.iter().all(|place| ball.contains(place)));
+        for direction in [DVec3::X, DVec3::Y, DVec3::ONE.normalize()] {
+            let farthest = outer.iter().map(|place| place.dot(direction));
+            assert!(farthest.fold(0.0, f64::max) > 0.98);
+        }
+        let few = vec![DVec3::ZERO; 3];
+        assert_eq!(outermost(few.clone()), few);
+    }
 
     #[test]
     fn sizes_and_colours_are_read() {

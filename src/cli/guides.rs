@@ -29,7 +29,7 @@ pub(super) struct GuideArgs {
     ghost: Vec<Ghost>,
     /// Draw the observer's axes at its place: x red, y green, z blue
     #[arg(long)]
-    axes: bool,
+    pub(super) axes: bool,
     /// Draw a bar of a round length in scene units, as it is in the middle of what is shown
     #[arg(long, conflicts_with = "full_sky")]
     scale_bar: bool,

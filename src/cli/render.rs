@@ -85,7 +85,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
         _ => file_for_each(&path, steps),
     };
     ensure!(
-        files.len() == 1 || !is_stdout(args.output.as_deref().unwrap_or(Path::new(""))),
+        files.len() == 1 || !is_stdout(&files[0]),
         "{steps} steps are as many pictures, they cannot all go to stdout; choose one with --steps"
     );
     check_destinations(files.iter().cloned(), &input.files)?;

@@ -10,7 +10,7 @@ use photosurface::{
     Viewpoint, Wanted,
 };
 
-use super::camera::{CameraArgs, Method, Outside, View, rough_places};
+use super::camera::{CameraArgs, Method, Outside, View, outermost, rough_places};
 use super::guides::{GuideArgs, label};
 use super::messages::{Verbosity, counted};
 
@@ -64,24 +64,24 @@ impl<'a> Studio<'a> {
         mut finished: impl FnMut(usize, &Picture) -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
         let steps = self.stage.scene().steps().len();
-        let places: Vec<_> = (0..steps)
-            .map(|step| rough_places(self.stage, step))
-            .collect();
-        let fov = self.camera.observer_fov(&places);
+        let stage = self.stage;
+        let all_places = (0..steps).map(|step| rough_places(stage, step));
+        let fov = self.camera.observer_fov(all_places);
         if self.camera.sheet {
-            let sheet = self.sheet(&places, fov)?;
-            return finished(0, &sheet);
+            return finished(0, &self.sheet(fov)?);
         }
         if self.camera.view == View::Observer {
-            for (step, places) in places.iter().enumerate() {
-                finished(step, &self.observer_view(step, fov, places)?)?;
+            for step in 0..steps {
+                finished(step, &self.observer_view(step, fov)?)?;
             }
             return Ok(());
         }
-        let mut all: Vec<DVec3> = places.into_iter().flatten().collect();
-        all.extend((0..steps).flat_map(|step| self.guides.ghosts(self.stage, step).1));
-        if let Some((low, high)) = self.stage.marker().and_then(|part| part.mesh().bounds()) {
+        let mut all: Vec<DVec3> = (0..steps).flat_map(|step| self.framed(step)).collect();
+        if let Some((low, high)) = stage.marker().and_then(|part| part.mesh().bounds()) {
             all.extend([low, high]);
+        }
+        if self.guides.axes {
+            all.push(DVec3::ZERO);
         }
         let outside = self.camera.outside(&[all])?[0];
         if self.camera.together {
@@ -91,6 +91,12 @@ impl<'a> Studio<'a> {
             finished(step, &self.outside_view(step..step + 1, &outside)?)?;
         }
         Ok(())
+    }
+
+    /// What a camera outside has to show of one step.
+    fn framed(&self, step: usize) -> Vec<DVec3> {
+        let ghosts = self.guides.ghosts(self.stage, step).1;
+        outermost([rough_places(self.stage, step), ghosts].concat())
     }
 
     /// The size of a sheet of so many steps.
@@ -104,23 +110,19 @@ impl<'a> Studio<'a> {
 
     /// For each step what the observer sees and, below, the photosurface from outside, followed by a camera at
     /// one distance.
-    fn sheet(&mut self, places: &[Vec<DVec3>], fov: f64) -> anyhow::Result<Picture> {
+    fn sheet(&mut self, fov: f64) -> anyhow::Result<Picture> {
         let size = self.camera.size();
         let background = self.camera.background;
-        let sheet_size = Self::sheet_size(self.camera, places.len())?;
+        let steps = self.stage.scene().steps().len();
+        let sheet_size = Self::sheet_size(self.camera, steps)?;
         let mut sheet = Picture::filled(sheet_size, between(background));
-        let framed: Vec<_> = (0..places.len())
-            .map(|step| {
-                let ghosts = self.guides.ghosts(self.stage, step).1;
-                [places[step].clone(), ghosts].concat()
-            })
-            .collect();
+        let framed: Vec<_> = (0..steps).map(|step| self.framed(step)).collect();
         let outside = self.camera.outside(&framed)?;
-        for (step, places) in places.iter().enumerate() {
-            let mut above = self.observer_view(step, fov, places)?;
+        for (step, outside) in outside.iter().enumerate() {
+            let mut above = self.observer_view(step, fov)?;
             let proper_time = self.stage.scene().steps()[step];
             label(&mut above, &format!("τ = {proper_time}"), background);
-            let below = self.outside_view(step..step + 1, &outside[step])?;
+            let below = self.outside_view(step..step + 1, outside)?;
             let x = step as u32 * (size.width() + GAP);
             sheet.paste(&above, x, 0);
             sheet.paste(&below, x, size.height() + GAP);
@@ -128,13 +130,9 @@ impl<'a> Studio<'a> {
         Ok(sheet)
     }
 
-    fn observer_view(
-        &mut self,
-        step: usize,
-        fov: f64,
-        places: &[DVec3],
-    ) -> anyhow::Result<Picture> {
-        let camera = self.camera.at_observer(fov, places)?;
+    fn observer_view(&mut self, step: usize, fov: f64) -> anyhow::Result<Picture> {
+        let places = rough_places(self.stage, step);
+        let camera = self.camera.at_observer(fov, &places)?;
         let line = self.stage.scene().observer().world_line();
         let viewpoint = Viewpoint::Observer(&line, self.stage.scene().steps()[step]);
         let mapped;

@@ -5,10 +5,12 @@
 //! followed back until it meets it. That a picture made so agrees with an ordinary picture of the
 //! photosurface is a statement about both (`tests/render.rs`).
 
+mod body;
 mod camera;
 mod caster;
 mod cone;
 mod lettering;
+mod look;
 mod paint;
 mod picture;
 mod scenery;

@@ -2,48 +2,24 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3, Vec3, Vec4};
+use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::caster::{Caster, MeshHit, Ray};
-use super::cone::Cone;
+use super::body::{Body, Geometry, Sitter, Stands};
+use super::caster::Caster;
+use super::look::{Look, nearest};
 use super::paint::{Paint, RenderError};
 use super::picture::{Picture, encoded};
-use super::sight::Sight;
-use super::sphere::{Ball, SmoothHit};
+use super::sphere::Ball;
 use super::turned::Turned;
 use super::{Camera, Strokes};
 use crate::mesh::{Appearance, Color, Material, Mesh, Part, Shape};
 use crate::scene::{Object, Source};
-use crate::spacetime::{WorldLine, unit};
-
-/// How bright a surface is that the lamp only grazes.
-const AMBIENT: f32 = 0.25;
-
-/// Most surfaces one ray of light is followed through.
-const MOST_LAYERS: usize = 64;
-
-/// A ray goes on behind a surface by this part of the way to it, so that it does not meet it again.
-const STEP_BEHIND: f64 = 1.0 + 1e-12;
+use crate::spacetime::WorldLine;
 
 /// How far facets of a round shape are from it, as a part of its size: less than a tenth of a pixel where it fills
 /// a picture 1000 pixels wide.
 const FACETS: f64 = 1e-4;
-
-/// What is too faint to see: half a step of 8 bits, squared.
-const OPAQUE: f32 = 1.0 / (510.0 * 510.0);
-
-/// How opaque a ghost is where it is seen head-on, and how much more at its rim.
-const GHOST: [f32; 2] = [0.1, 0.6];
-
-/// How much of a ghost is seen through what is in front of it.
-const GHOST_BEHIND: f32 = 0.8;
-
-/// How opaque the edges of triangles are.
-const WIRE: f32 = 0.7;
-
-/// Half the width of the edges of triangles, in pixels.
-const HALF_WIRE: f64 = 0.6;
 
 /// Things to take pictures of.
 ///
@@ -127,64 +103,6 @@ impl Default for PictureOptions {
             wireframe: None,
         }
     }
-}
-
-struct Body {
-    geometry: Geometry,
-    paint: Paint,
-    stands: Stands,
-}
-
-enum Geometry {
-    Mesh(Caster),
-    Ball(Ball),
-    Turned(Turned),
-}
-
-impl Geometry {
-    /// Centre and radius of a ball around it.
-    fn ball(&self) -> (DVec3, f64) {
-        match self {
-            Self::Mesh(caster) => {
-                let (low, high) = caster.mesh().bounds().unwrap_or_default();
-                ((low + high) / 2.0, low.distance(high) / 2.0)
-            }
-            Self::Ball(ball) => ball.around(),
-            Self::Turned(turned) => turned.around(),
-        }
-    }
-}
-
-/// In which frame a body's geometry is given.
-#[derive(Clone, Copy)]
-enum Stands {
-    /// Its rest frame.
-    AtRest(WorldLine),
-    /// The observer's, mapped from its rest frame.
-    Mapped(WorldLine),
-    /// The observer's.
-    Plain,
-}
-
-/// A body for the moment of one picture.
-struct Sitter<'a> {
-    body: &'a Body,
-    /// How the observer sees it; none from outside.
-    sight: Option<Sight>,
-    /// Where on the sky it is.
-    cone: Cone,
-}
-
-/// What a ray meets.
-struct Meeting<'a> {
-    distance: f64,
-    paint: &'a Paint,
-    /// How much of its colour the lamp shows.
-    brightness: f32,
-    texture: DVec2,
-    vertex_color: Vec4,
-    /// The corners of the triangle, as they are seen, where wires are wanted.
-    triangle: Option<[DVec3; 3]>,
 }
 
 impl Scenery {
@@ -341,7 +259,7 @@ fn fine_mesh(object: &Object, shape: &Shape, appearance: &Appearance, part: &Par
 }
 
 impl Viewpoint<'_> {
-    fn eye(&self) -> DVec3 {
+    pub(super) fn eye(&self) -> DVec3 {
         match *self {
             Viewpoint::Observer(..) => DVec3::ZERO,
             Viewpoint::Outside(place) => place,
@@ -356,214 +274,11 @@ fn sitters<'a>(bodies: impl Iterator<Item = &'a Body>, viewpoint: Viewpoint) -> 
         .collect()
 }
 
-/// All that decides on the colour of a direction.
-struct Look<'a> {
-    eye: DVec3,
-    sitters: Vec<Sitter<'a>>,
-    ghosts: Vec<Sitter<'a>>,
-    ghost_colors: Vec<Vec3>,
-    background: Vec3,
-    /// The colour of wires, and how they come to be on the picture.
-    wires: Option<(Vec3, &'a Camera)>,
-}
-
-impl Look<'_> {
-    /// The linear colour that is seen at a place of the picture, in the direction `seen`.
-    fn light(&self, place: DVec2, seen: DVec3) -> Vec3 {
-        let (mut light, distance) = self.solid_light(place, seen);
-        for (ghost, color) in self.ghosts.iter().zip(&self.ghost_colors) {
-            if let Some(meeting) = ghost.meeting(self.eye, seen, 0.0, f64::MAX, false) {
-                let grazing = (1.0 - meeting.brightness) / (1.0 - AMBIENT);
-                let opacity = GHOST[0] + GHOST[1] * grazing * grazing;
-                let behind = meeting.distance > distance;
-                let veiled = if behind { GHOST_BEHIND } else { 1.0 };
-                light = light.lerp(*color, opacity * veiled);
-            }
-        }
-        light
-    }
-
-    /// Without ghosts, and how far away the first surface is.
-    fn solid_light(&self, place: DVec2, seen: DVec3) -> (Vec3, f64) {
-        let mut light = Vec3::ZERO;
-        let mut clearness = 1.0;
-        let mut beyond = 0.0;
-        let mut first = f64::MAX;
-        for _ in 0..MOST_LAYERS {
-            let nearest = nearest(
-                &self.sitters,
-                self.eye,
-                seen,
-                beyond,
-                f64::MAX,
-                self.wires.is_some(),
-            );
-            let Some(meeting) = nearest else {
-                return (light + self.background * clearness, first);
-            };
-            let Meeting { paint, texture, .. } = meeting;
-            let (mut color, mut opacity) = paint.color_at(texture, meeting.vertex_color);
-            if let (Some((wire, camera)), Some(triangle)) = (self.wires, meeting.triangle)
-                && is_on_edge(camera, triangle.map(|corner| corner - self.eye), place)
-            {
-                // Not opaque: where triangles are smaller than pixels all would be wire.
-                (color, opacity) = (color.lerp(wire, WIRE), opacity.max(WIRE));
-            }
-            if opacity > 0.0 {
-                first = first.min(meeting.distance);
-            }
-            light += color * (meeting.brightness * opacity * clearness);
-            clearness *= 1.0 - opacity;
-            if clearness < OPAQUE {
-                break;
-            }
-            beyond = meeting.distance * STEP_BEHIND;
-        }
-        (light, first)
-    }
-}
-
-/// The first thing that a ray meets, farther than `beyond` and not as far as `limit`.
-fn nearest<'a>(
-    sitters: &[Sitter<'a>],
-    eye: DVec3,
-    seen: DVec3,
-    beyond: f64,
-    limit: f64,
-    wires: bool,
-) -> Option<Meeting<'a>> {
-    sitters
-        .iter()
-        .fold(None, |nearest: Option<Meeting>, sitter| {
-            let limit = nearest.as_ref().map_or(limit, |nearest| nearest.distance);
-            sitter.meeting(eye, seen, beyond, limit, wires).or(nearest)
-        })
-}
-
-/// Whether a place of the picture is on an edge of a triangle, given by its corners from the eye.
-fn is_on_edge(camera: &Camera, corners: [DVec3; 3], place: DVec2) -> bool {
-    let [Some(a), Some(b), Some(c)] = corners.map(|corner| camera.place(corner)) else {
-        return false;
-    };
-    [[a, b], [b, c], [c, a]].into_iter().any(|[start, end]| {
-        let along = end - start;
-        let part = (place - start).dot(along) / along.length_squared();
-        place.distance(start.lerp(end, part.clamp(0.0, 1.0))) < HALF_WIRE
-    })
-}
-
-impl<'a> Sitter<'a> {
-    fn new(body: &'a Body, eye: DVec3, viewpoint: Viewpoint) -> Self {
-        let sight = match (viewpoint, body.stands) {
-            (
-                Viewpoint::Observer(observer, proper_time),
-                Stands::AtRest(line) | Stands::Mapped(line),
-            ) => Some(Sight::new(observer, &line, proper_time)),
-            _ => None,
-        };
-        let (center, radius) = body.geometry.ball();
-        let cone = match (&sight, body.stands) {
-            (Some(sight), Stands::AtRest(_)) => sight.cone(center, radius),
-            _ => Cone::of_ball(eye, center, radius),
-        };
-        Self { body, sight, cone }
-    }
-
-    /// Where the ray from `eye` along `seen` meets it, farther than `beyond` and not as far as `limit`, both as
-    /// seen.
-    fn meeting(
-        &self,
-        eye: DVec3,
-        seen: DVec3,
-        beyond: f64,
-        limit: f64,
-        wires: bool,
-    ) -> Option<Meeting<'a>> {
-        if !self.cone.may_hold(seen) {
-            return None;
-        }
-        let (origin, direction, stretch) = match (&self.sight, self.body.stands) {
-            (Some(sight), Stands::AtRest(_)) => {
-                let ray = sight.ray(seen);
-                (ray.origin, ray.direction, ray.stretch)
-            }
-            _ => (eye, seen, 1.0),
-        };
-        let [beyond, limit] = [beyond, limit].map(|seen| (seen * stretch).min(f64::MAX));
-        let paint = &self.body.paint;
-        let mut triangle = None;
-        let (distance, normal, texture, vertex_color) = match &self.body.geometry {
-            Geometry::Mesh(caster) => {
-                let ray = Ray::new(origin, direction);
-                let hit = caster.cast(&ray, beyond, limit, paint.double_sided)?;
-                let (normal, texture, color) = attributes(caster.mesh(), paint, &hit);
-                if wires && matches!(self.body.stands, Stands::Mapped(_)) {
-                    let place = |corner: u32| caster.mesh().positions()[corner as usize];
-                    triangle = Some(hit.corners.map(place));
-                }
-                (hit.distance, normal, texture, color)
-            }
-            Geometry::Ball(ball) => smooth(ball.cast(origin, direction, beyond, limit)?),
-            Geometry::Turned(turned) => smooth(turned.cast(origin, direction, beyond, limit)?),
-        };
-        let lit = match (&self.sight, self.body.stands) {
-            (Some(sight), Stands::Mapped(_)) => sight
-                .normal_at_rest(normal, seen)
-                .map(|normal| normal.dot(sight.ray(seen).direction)),
-            _ => unit(normal).map(|normal| normal.dot(direction)),
-        };
-        Some(Meeting {
-            distance: distance / stretch,
-            paint,
-            brightness: match lit {
-                Some(cosine) if !paint.unlit => {
-                    AMBIENT + (1.0 - AMBIENT) * cosine.abs().min(1.0) as f32
-                }
-                _ => 1.0,
-            },
-            texture,
-            vertex_color,
-            triangle,
-        })
-    }
-}
-
-/// The same of a surface that has no corners.
-fn smooth(hit: SmoothHit) -> (f64, DVec3, DVec2, Vec4) {
-    (hit.distance, hit.normal, hit.texture, Vec4::ONE)
-}
-
-/// Normal, texture coordinates and colour between the corners of a triangle.
-fn attributes(mesh: &Mesh, paint: &Paint, hit: &MeshHit) -> (DVec3, DVec2, Vec4) {
-    let corners = hit.corners.map(|corner| corner as usize);
-    let between = corners.into_iter().zip(hit.weights);
-    let normals = mesh.normals().unwrap_or_default();
-    let normal = between
-        .clone()
-        .filter_map(|(corner, weight)| Some(*normals.get(corner)? * weight))
-        .sum();
-    let set = paint
-        .texture_set()
-        .and_then(|set| mesh.texture_coordinates().get(set));
-    let texture = set.map_or(DVec2::ZERO, |set| {
-        let weighted = between.clone();
-        weighted
-            .map(|(corner, weight)| set[corner].as_dvec2() * weight)
-            .sum()
-    });
-    let color = mesh.colors().map_or(Vec4::ONE, |colors| {
-        let weighted = between;
-        weighted
-            .map(|(corner, weight)| colors[corner] * weight as f32)
-            .sum()
-    });
-    (normal, texture, color)
-}
-
 #[cfg(test)]
 mod tests {
     use serde_json::json;
 
+    use super::super::body::AMBIENT;
     use super::*;
     use crate::render::{PictureSize, Projection};
 
