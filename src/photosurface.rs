@@ -70,6 +70,17 @@ pub struct Photosurface {
     pub material: Option<Arc<Material>>,
 }
 
+impl Photosurface {
+    /// What was asked for of its vertices.
+    pub fn attributes(&self) -> Attributes {
+        Attributes {
+            doppler: self.vertex_data.doppler_factors.is_some(),
+            emission_time: self.vertex_data.emission_times.is_some(),
+            rest_position: self.vertex_data.rest_positions.is_some(),
+        }
+    }
+}
+
 /// What is wanted of photosurfaces beside their shape, and how much may be spent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wanted {
@@ -225,7 +236,7 @@ impl Stage {
     }
 
     fn plan<'a>(
-        &'a self,
+        &self,
         object: &Object,
         placed: &'a Placed,
         step: usize,
@@ -240,7 +251,7 @@ impl Stage {
         object: &Object,
         step: usize,
         view: &View,
-        surface: Surface,
+        surface: Surface<'_>,
         wanted: Wanted,
     ) -> Photosurface {
         let steps = self.scene.steps();
@@ -265,7 +276,7 @@ impl Stage {
         Photosurface {
             facts,
             vertex_data: VertexData::new(view, surface.part.mesh(), wanted.attributes),
-            material: surface.part.material,
+            material: surface.part.material.clone(),
             mesh: surface.seen,
         }
     }

@@ -123,18 +123,17 @@ impl AccuracyArgs {
         (stage, predictions)
     }
 
-    /// Whether the photosurfaces, of so many triangles in all, are within their tolerances and the budget; says so
-    /// where they are not.
-    pub(super) fn is_kept(&self, made: &[Facts], triangles: usize, verbosity: Verbosity) -> bool {
-        let within_budget = triangles as u64 <= self.max_triangles;
+    /// Whether the photosurfaces are within their tolerances and the budget; says so where they are not.
+    pub(super) fn is_kept(&self, made: &Tally, verbosity: Verbosity) -> bool {
+        let within_budget = made.triangles as u64 <= self.max_triangles;
         if !within_budget {
             verbosity.note(format_args!(
                 "{} triangles are more than --max-triangles {}: those that there are before any subdivision stay",
-                grouped(triangles),
+                grouped(made.triangles),
                 grouped(self.max_triangles as usize)
             ));
         }
-        all_certified(made, verbosity) && within_budget
+        made.all_certified(verbosity) && within_budget
     }
 }
 
@@ -159,31 +158,56 @@ fn predicted(predictions: &[Prediction]) -> f64 {
     triangles.sum()
 }
 
-/// Says which photosurfaces are not certified; `true` if all are.
-fn all_certified(made: &[Facts], verbosity: Verbosity) -> bool {
-    let open: Vec<_> = made
-        .iter()
-        .filter(|facts| !facts.certificate.complete)
-        .collect();
-    let excess = |facts: &Facts| facts.certificate.total / facts.certificate.tolerance;
-    let Some(worst) = open.iter().max_by(|a, b| excess(a).total_cmp(&excess(b))) else {
-        return true;
-    };
-    let certificate = &worst.certificate;
-    verbosity.note(format_args!(
-        "{} of {} photosurfaces are not within the tolerance; the worst, against what \
-         was asked for, is \"{}\", proven within {:.3e} where that was {:.3e} ({}: gap {:.3e}, curvature {:.3e}, rounding {:.3e})",
-        open.len(),
-        made.len(),
-        worst.name,
-        certificate.total,
-        certificate.tolerance,
-        certificate.unit,
-        certificate.gap,
-        certificate.curvature,
-        certificate.rounding,
-    ));
-    false
+/// What was made, as far as it is told in the end.
+#[derive(Debug, Default)]
+pub(super) struct Tally {
+    pub(super) photosurfaces: usize,
+    /// Those in files, in which all steps may share a mesh.
+    pub(super) triangles: usize,
+    /// How many are not within their tolerances.
+    open: usize,
+    /// The one of those that is farthest from what was asked for.
+    worst: Option<Facts>,
+}
+
+impl Tally {
+    pub(super) fn add(&mut self, facts: &Facts, triangles: usize) {
+        self.photosurfaces += 1;
+        self.triangles += triangles;
+        if facts.certificate.complete {
+            return;
+        }
+        self.open += 1;
+        let excess = |facts: &Facts| facts.certificate.total / facts.certificate.tolerance;
+        // Written so that NaN is worse than anything.
+        let better = |worst: &Facts| excess(facts) <= excess(worst);
+        if !self.worst.as_ref().is_some_and(better) {
+            self.worst = Some(facts.clone());
+        }
+    }
+
+    /// Says which photosurfaces are not certified; `true` if all are.
+    fn all_certified(&self, verbosity: Verbosity) -> bool {
+        let Some(worst) = &self.worst else {
+            return true;
+        };
+        let certificate = &worst.certificate;
+        verbosity.note(format_args!(
+            "{} of {} photosurfaces are not within the tolerance; the worst, against what \
+             was asked for, is \"{}\", proven within {:.3e} where that was {:.3e} ({}: gap {:.3e}, curvature {:.3e}, \
+             rounding {:.3e})",
+            self.open,
+            self.photosurfaces,
+            worst.name,
+            certificate.total,
+            certificate.tolerance,
+            certificate.unit,
+            certificate.gap,
+            certificate.curvature,
+            certificate.rounding,
+        ));
+        false
+    }
 }
 
 /// `1e-3`, `abs:0.01` or `deg:0.02`

@@ -3,17 +3,21 @@
 use std::ffi::OsStr;
 use std::fs;
 use std::io::{IsTerminal, Write, stdout};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, bail, ensure};
+use indicatif::ProgressBar;
 use photosurface::{
-    Attribute, Export, Facts, Format, Photosurface, Playback, Precision, Report, Scene, Stage,
-    StageTime, Wanted, WriteError, write_glb, write_gltf, write_ply, write_whole,
+    Attribute, Export, Facts, Format, GltfFile, Playback, Precision, Report, Scene, Stage,
+    StageTime, Wanted, WriteError, write_ply, write_whole,
 };
 
+use tempfile::{SpooledTempFile, spooled_tempfile, spooled_tempfile_in};
+
 use super::Status;
-use super::accuracy::AccuracyArgs;
+use super::accuracy::{AccuracyArgs, Tally};
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print, size};
@@ -87,6 +91,9 @@ struct OutputArgs {
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
 }
+
+/// Of the data of a GLB, whose JSON comes first and is known last, no more than so many bytes wait in memory.
+const HELD_IN_MEMORY: usize = 1 << 25;
 
 /// How steps are shown one after another.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
@@ -177,68 +184,153 @@ fn export(
         attributes: format.attributes(stage.scene()),
         ..args.accuracy.wanted(precision)
     };
-    let (stage, _) = args.accuracy.within_budget(stage, wanted, verbosity);
+    let stage = match wanted.subdivide {
+        true => args.accuracy.within_budget(stage, wanted, verbosity).0,
+        false => stage,
+    };
     clock.stop("predict");
 
     let parts: usize = stage.objects().map(|(_, parts)| parts.len()).sum();
     let all = parts * stage.scene().steps().len();
-    let progress = progress_bar(all, "photosurfaces", verbosity);
-    let mut made = Vec::new();
-    let mut batch = Vec::new();
-    let mut add = |photosurface: Photosurface, batch: &mut Vec<Photosurface>| {
-        verbosity.detail(describe(&photosurface.facts));
-        made.push(photosurface.facts.clone());
-        batch.push(photosurface);
-        progress.inc(1);
+    let mut work = Work {
+        progress: progress_bar(all, "photosurfaces", verbosity),
+        stage: &stage,
+        wanted,
+        playback,
+        verbosity,
+        clock,
+        tally: Tally::default(),
+        reported: report.map(|_| vec![]),
     };
-    let morphing = matches!(playback, Some(Playback::Morph { .. }));
-    if morphing {
-        for photosurface in stage.morphing(wanted).flatten() {
-            add(photosurface, &mut batch);
-        }
-        clock.stop("photosurface");
-    }
-    let steps = match morphing {
-        true => 0..0,
-        false => 0..stage.scene().steps().len(),
-    };
-    for step in steps {
-        for photosurface in stage.photosurfaces(step, wanted) {
-            add(photosurface, &mut batch);
-        }
-        clock.stop("photosurface");
-        // A file for each step is written as soon as it can be, so that memory does not grow with them.
-        if args.output.split {
-            let batch = std::mem::take(&mut batch);
-            write_file(&files[step], format, &stage, playback, &batch, || Ok(()))?;
-            clock.stop("write");
-        }
-    }
-    let write_report = |clock: &Clock| match report {
-        Some(report) => write_report(report, &stage, &made, clock),
-        None => Ok(()),
+    let finish = |work: &Work<'_>| match (report, &work.reported) {
+        (Some(path), Some(made)) => write_report(path, &stage, made, &work.clock),
+        _ => Ok(()),
     };
     if args.output.split {
-        write_report(&clock)?;
+        for (step, file) in files.iter().enumerate() {
+            write_file(file, format, &mut work, step..step + 1, |_| Ok(()))?;
+        }
+        finish(&work)?;
     } else {
         // Before the mesh appears: where the report fails, nothing is written.
-        write_file(&files[0], format, &stage, playback, &batch, || {
-            clock.stop("write");
-            write_report(&clock)
-        })?;
+        let steps = 0..stage.scene().steps().len();
+        write_file(&files[0], format, &mut work, steps, finish)?;
     }
-    progress.finish_and_clear();
+    work.progress.finish_and_clear();
 
-    for (name, seconds) in &clock.stages {
+    for (name, seconds) in &work.clock.stages {
         verbosity.detail(format_args!("{name}: {seconds:.3} s"));
     }
-    // Where all steps are one mesh, its triangles are there once.
-    let meshes = made.iter().filter(|facts| !morphing || facts.step == 0);
-    let triangles = meshes.map(|facts| facts.triangles).sum();
     if !is_stdout(&files[0]) {
-        verbosity.result(summary(files, format, made.len(), triangles));
+        verbosity.result(summary(files, format, &work.tally));
     }
-    Ok(args.accuracy.is_kept(&made, triangles, verbosity))
+    Ok(args.accuracy.is_kept(&work.tally, verbosity))
+}
+
+/// Photosurfaces in the making, and what has been made of them so far.
+struct Work<'a> {
+    stage: &'a Stage,
+    wanted: Wanted,
+    playback: Option<Playback>,
+    verbosity: Verbosity,
+    progress: ProgressBar,
+    clock: Clock,
+    tally: Tally,
+    /// For the report, if there is to be one.
+    reported: Option<Vec<Facts>>,
+}
+
+impl Work<'_> {
+    fn is_morphing(&self) -> bool {
+        matches!(self.playback, Some(Playback::Morph { .. }))
+    }
+
+    fn count(&mut self, facts: &Facts) {
+        self.verbosity.detail(describe(facts));
+        // Where all steps are one mesh, its triangles are there once.
+        let first = facts.step == 0 || !self.is_morphing();
+        self.tally
+            .add(facts, if first { facts.triangles } else { 0 });
+        if let Some(reported) = &mut self.reported {
+            reported.push(facts.clone());
+        }
+        self.progress.inc(1);
+    }
+
+    /// Makes the photosurfaces of some steps and puts each into the file before the next is made, so that memory does
+    /// not grow with them.
+    fn fill<W: Write>(
+        &mut self,
+        file: &mut GltfFile<'_, W>,
+        steps: Range<usize>,
+    ) -> Result<(), WriteError> {
+        let (stage, wanted) = (self.stage, self.wanted);
+        if self.is_morphing() {
+            for part in stage.morphing(wanted) {
+                part.iter().for_each(|step| self.count(&step.facts));
+                self.clock.stop("photosurface");
+                file.add_morphing(&part)?;
+                self.clock.stop("write");
+            }
+            return Ok(());
+        }
+        for photosurface in steps.flat_map(|step| stage.photosurfaces(step, wanted)) {
+            self.count(&photosurface.facts);
+            self.clock.stop("photosurface");
+            file.add(&photosurface)?;
+            self.clock.stop("write");
+        }
+        Ok(())
+    }
+
+    fn glb(
+        &mut self,
+        steps: Range<usize>,
+        data: SpooledTempFile,
+        out: &mut dyn Write,
+    ) -> Result<(), WriteError> {
+        let (scene, attributes) = (self.stage.facts(), self.wanted.attributes);
+        let mut file = GltfFile::new(data, &scene, self.stage.marker(), attributes, self.playback)?;
+        self.fill(&mut file, steps)?;
+        file.finish_glb(&mut *out)?;
+        self.clock.stop("write");
+        Ok(out.flush()?)
+    }
+
+    fn gltf(
+        &mut self,
+        steps: Range<usize>,
+        name: &str,
+        json: &mut dyn Write,
+        data: &mut dyn Write,
+    ) -> Result<(), WriteError> {
+        let (scene, attributes) = (self.stage.facts(), self.wanted.attributes);
+        let mut file = GltfFile::new(data, &scene, self.stage.marker(), attributes, self.playback)?;
+        self.fill(&mut file, steps)?;
+        file.finish_gltf(name, &mut *json)?;
+        self.clock.stop("write");
+        Ok(json.flush()?)
+    }
+
+    /// All at once: the format says first how many vertices there are.
+    fn ply(&mut self, steps: Range<usize>, out: &mut dyn Write) -> Result<(), WriteError> {
+        let (stage, wanted) = (self.stage, self.wanted);
+        let mut photosurfaces = vec![];
+        for photosurface in steps.flat_map(|step| stage.photosurfaces(step, wanted)) {
+            self.count(&photosurface.facts);
+            photosurfaces.push(photosurface);
+        }
+        self.clock.stop("photosurface");
+        let export = Export {
+            scene: &stage.facts(),
+            marker: stage.marker(),
+            photosurfaces: &photosurfaces,
+            playback: None,
+        };
+        write_ply(&export, &mut *out)?;
+        self.clock.stop("write");
+        Ok(out.flush()?)
+    }
 }
 
 impl OutputArgs {
@@ -343,36 +435,34 @@ fn outputs(levels: &[Level], format: Format) -> impl Iterator<Item = PathBuf> {
     })
 }
 
-/// Writes a file, and does what is left to do when all of it is written and it is about to appear.
+/// Writes a file of some steps, and does what is left to do when all of it is written and it is about to appear.
 fn write_file(
     path: &Path,
     format: Format,
-    stage: &Stage,
-    playback: Option<Playback>,
-    photosurfaces: &[Photosurface],
-    before_it_appears: impl FnOnce() -> Result<(), WriteError>,
+    work: &mut Work<'_>,
+    steps: Range<usize>,
+    before_it_appears: impl FnOnce(&Work<'_>) -> Result<(), WriteError>,
 ) -> anyhow::Result<()> {
-    let scene = stage.facts();
-    let export = Export {
-        scene: &scene,
-        marker: stage.marker(),
-        photosurfaces,
-        playback,
-    };
     if is_stdout(path) {
-        print(|out| Ok(write_glb(&export, out)?))?;
-        return Ok(before_it_appears()?);
+        let data = spooled_tempfile(HELD_IN_MEMORY);
+        print(|out| Ok(work.glb(steps, data, out)?))?;
+        return Ok(before_it_appears(work)?);
     }
     match format {
-        Format::Glb => write_whole(path, |writer| {
-            write_glb(&export, &mut *writer)?;
-            writer.flush()?;
-            before_it_appears()
-        })?,
+        Format::Glb => {
+            // Where the file itself has to find room too.
+            let directory = path
+                .parent()
+                .filter(|directory| *directory != Path::new(""));
+            let data = spooled_tempfile_in(HELD_IN_MEMORY, directory.unwrap_or(Path::new(".")));
+            write_whole(path, |writer| {
+                work.glb(steps, data, writer)?;
+                before_it_appears(work)
+            })?;
+        }
         Format::Ply => write_whole(path, |writer| {
-            write_ply(&export, &mut *writer)?;
-            writer.flush()?;
-            before_it_appears()
+            work.ply(steps, writer)?;
+            before_it_appears(work)
         })?,
         Format::Gltf => {
             let binary = binary_beside(path);
@@ -384,10 +474,8 @@ fn write_file(
             // The data first: a .gltf never stands there without it.
             write_whole(path, |json_writer| {
                 write_whole(&binary, |binary_writer| {
-                    write_gltf(&export, name, &mut *json_writer, &mut *binary_writer)?;
-                    json_writer.flush()?;
-                    binary_writer.flush()?;
-                    before_it_appears()
+                    work.gltf(steps, name, json_writer, binary_writer)?;
+                    before_it_appears(work)
                 })
             })?;
         }
@@ -427,7 +515,7 @@ fn write_report(
     }
 }
 
-fn summary(files: &[PathBuf], format: Format, photosurfaces: usize, triangles: usize) -> String {
+fn summary(files: &[PathBuf], format: Format, made: &Tally) -> String {
     let mut bytes = 0;
     for file in files {
         bytes += fs::metadata(file).map_or(0, |data| data.len());
@@ -438,8 +526,8 @@ fn summary(files: &[PathBuf], format: Format, photosurfaces: usize, triangles: u
     let place = from_first_to_last(files);
     format!(
         "{place}: {}, {}, {}",
-        counted(photosurfaces, "photosurface"),
-        counted(triangles, "triangle"),
+        counted(made.photosurfaces, "photosurface"),
+        counted(made.triangles, "triangle"),
         size(bytes)
     )
 }

@@ -93,7 +93,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     let (_, scene) = levels.pop().expect("one level was made sure of");
     let mut stage = Stage::new(scene, input.models);
     let wanted = args.accuracy.wanted(Precision::Double);
-    if camera.shows_meshes(method) {
+    if camera.shows_meshes(method) && wanted.subdivide {
         stage = args.accuracy.within_budget(stage, wanted, verbosity).0;
     }
     let progress = progress_bar(Studio::rows(camera, steps), "rows", verbosity);
@@ -114,13 +114,10 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
             counted(files.len(), "picture")
         ));
     }
-    let triangles = studio.made.iter().map(|facts| facts.triangles).sum();
-    Ok(
-        match args.accuracy.is_kept(&studio.made, triangles, verbosity) {
-            true => Status::Done,
-            false => Status::NotCertified,
-        },
-    )
+    Ok(match args.accuracy.is_kept(&studio.tally, verbosity) {
+        true => Status::Done,
+        false => Status::NotCertified,
+    })
 }
 
 fn check_output(output: Option<&Path>) -> anyhow::Result<()> {

@@ -6,10 +6,11 @@ use std::time::Instant;
 use anyhow::Context;
 use indicatif::ProgressBar;
 use photosurface::{
-    Camera, Color, DVec3, Facts, Picture, PictureOptions, PictureSize, Scenery, Stage, Strokes,
-    Viewpoint, Wanted,
+    Camera, Color, DVec3, Picture, PictureOptions, PictureSize, Scenery, Stage, Strokes, Viewpoint,
+    Wanted,
 };
 
+use super::accuracy::Tally;
 use super::camera::{CameraArgs, Method, Outside, View, outermost, rough_places};
 use super::guides::{GuideArgs, label};
 use super::messages::{Verbosity, counted};
@@ -30,8 +31,10 @@ pub(super) struct Studio<'a> {
     progress: ProgressBar,
     /// All objects in their rest frames, for rays.
     at_rest: Option<Scenery>,
-    /// What was said of every photosurface in a picture, each once.
-    pub(super) made: Vec<Facts>,
+    /// What was made, each photosurface counted once.
+    pub(super) tally: Tally,
+    /// The first step that has not been counted.
+    uncounted: usize,
 }
 
 impl<'a> Studio<'a> {
@@ -54,7 +57,8 @@ impl<'a> Studio<'a> {
             wanted,
             verbosity,
             progress,
-            made: Vec::new(),
+            tally: Tally::default(),
+            uncounted: 0,
         })
     }
 
@@ -173,7 +177,8 @@ impl<'a> Studio<'a> {
         let objects = self.stage.scene().objects();
         let stage = self.stage;
         // On a sheet by meshes each is in two pictures.
-        let is_new = self.made.last().is_none_or(|facts| facts.step < step);
+        let is_new = step >= self.uncounted;
+        self.uncounted = self.uncounted.max(step + 1);
         for surface in stage.photosurfaces(step, self.wanted) {
             let object = objects
                 .iter()
@@ -181,7 +186,7 @@ impl<'a> Studio<'a> {
                 .expect("a photosurface is of an object of its scene");
             scenery.add_photosurface(object, &surface.mesh, surface.material.as_ref())?;
             if is_new {
-                self.made.push(surface.facts);
+                self.tally.add(&surface.facts, surface.facts.triangles);
             }
         }
         Ok(())

@@ -182,6 +182,16 @@ impl Mesh {
         &self.texture_coordinates
     }
 
+    /// The triangles as all meshes share them that differ in geometry alone.
+    pub(crate) fn shared_triangles(&self) -> &Arc<[[u32; 3]]> {
+        &self.triangles
+    }
+
+    /// The colours, likewise.
+    pub(crate) fn shared_colors(&self) -> Option<&Arc<[Vec4]>> {
+        self.colors.as_ref()
+    }
+
     /// Linear colours.
     pub fn colors(&self) -> Option<&[Vec4]> {
         self.colors.as_deref()

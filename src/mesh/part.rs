@@ -49,9 +49,13 @@ impl Part {
     }
 
     /// The same part with other geometry, which has normals.
-    pub(crate) fn with_mesh(self, mesh: Mesh) -> Self {
+    pub(crate) fn with_mesh(&self, mesh: Mesh) -> Self {
         debug_assert!(mesh.normals().is_some());
-        Self { mesh, ..self }
+        Self {
+            name: self.name.clone(),
+            mesh,
+            material: self.material.clone(),
+        }
     }
 
     /// The geometry.

@@ -1,9 +1,13 @@
 //! What the tolerances of a scene will take, and what a budget leaves of them.
 
-use super::{Stage, Wanted};
+use super::{Placed, Stage, Wanted};
+use crate::mesh::{Mesh, Part};
 
 /// Room that a budget leaves for predictions, which are good to about a half (`tests/cli.rs`).
 const PREDICTION_ROOM: f64 = 1.6;
+
+/// Of more triangles than this a prediction looks at as many, evenly spread.
+const TRIANGLES_LOOKED_AT: usize = 50_000;
 
 /// Of more steps than this a prediction looks at as many, evenly spread.
 const STEPS_LOOKED_AT: usize = 32;
@@ -98,6 +102,12 @@ impl Stage {
     }
 
     fn prediction(&self, object: usize, wanted: Wanted) -> Prediction {
+        let (object, placed) = (&self.scene.objects()[object], &self.objects[object]);
+        let sketch = wanted.subdivide.then(|| placed.sketch()).flatten();
+        let (placed, weights) = match &sketch {
+            Some((sketch, weights)) => (sketch, weights.clone()),
+            None => (placed, vec![1.0; placed.parts.len()]),
+        };
         let steps = self.scene.steps().len();
         let looked_at = steps.min(STEPS_LOOKED_AT);
         let mut prediction = Prediction {
@@ -106,11 +116,60 @@ impl Stage {
         };
         for index in 0..looked_at {
             let step = index * (steps - 1) / (looked_at - 1).max(1);
-            let (object, placed) = (&self.scene.objects()[object], &self.objects[object]);
-            let foresight = self.plan(object, placed, step, wanted).foresee(wanted);
+            let plan = self.plan(object, placed, step, wanted);
+            let foresight = plan.foresee(wanted, &weights);
             prediction.triangles += foresight.triangles * steps as f64 / looked_at as f64;
             prediction.reachable &= foresight.reachable;
         }
         prediction
     }
+}
+
+impl Placed {
+    /// A sample of the triangles where there are many, and for each part of how many each is a sample.
+    fn sketch(&self) -> Option<(Self, Vec<f64>)> {
+        let count = |part: &Part| part.mesh().triangles().len();
+        let all: usize = self.parts.iter().map(|(_, part)| count(part)).sum();
+        if all <= TRIANGLES_LOOKED_AT || self.shaped.is_some() {
+            return None;
+        }
+        let share = TRIANGLES_LOOKED_AT as f64 / all as f64;
+        let parts = self.parts.iter().map(|(name, part)| {
+            let triangles = part.mesh().triangles();
+            let sampled = (triangles.len() as f64 * share).ceil() as usize;
+            let weight = triangles.len() as f64 / sampled as f64;
+            (
+                (name.clone(), part.with_mesh(sample(part.mesh(), sampled))),
+                weight,
+            )
+        });
+        let (parts, weights) = parts.unzip();
+        let sketch = Self {
+            parts,
+            shaped: None,
+            loosening: self.loosening,
+        };
+        Some((sketch, weights))
+    }
+}
+
+/// So many triangles of a mesh, spread by multiples of the golden ratio: in step with no pattern of rows.
+fn sample(mesh: &Mesh, triangles: usize) -> Mesh {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let all = mesh.triangles();
+    let chosen = (0..triangles).map(|index| {
+        let place = (index as f64 * GOLDEN).fract() * all.len() as f64;
+        all[(place as usize).min(all.len() - 1)]
+    });
+    let corners = chosen
+        .flatten()
+        .map(|corner| mesh.positions()[corner as usize]);
+    let positions: Vec<_> = corners.collect();
+    let indices = (0..positions.len() as u32).step_by(3);
+    let sampled = Mesh::new(
+        positions,
+        indices.map(|i| [i, i + 1, i + 2]).collect::<Vec<_>>(),
+    );
+    let sampled = sampled.and_then(Mesh::with_flat_normals);
+    sampled.expect("finite positions and indices in range, as in the mesh")
 }

@@ -11,8 +11,8 @@ use crate::light_cone::View;
 use crate::mesh::{Mesh, Part, Shape};
 use crate::scene::Tolerance;
 use crate::tessellate::{
-    Allowance, Bounds, Certificate, Counts, Precision, Singles, local_stretch, minimum_triangles,
-    predicted_pieces, refine, rounding_bound, triangle_gap,
+    Allowance, Bounds, Certificate, Counts, Precision, Singles, gap_ceiling, local_stretch,
+    minimum_triangles, predicted_pieces, refine, rounding_bound, triangle_gap,
 };
 
 /// What part of the tolerance of a curved shape its facets may use; the rest is for the gap between them.
@@ -38,6 +38,9 @@ const LEAST_OF_ANGLE: f64 = 1e-6;
 
 /// Round shapes of more facets are not made to predict what refinement will do to them.
 const FACETS_MADE_TO_PREDICT: u64 = 20_000;
+
+/// Triangles a thread takes at a time; always the same, so that results do not depend on the threads.
+const TRIANGLES_PER_JOB: usize = 4096;
 
 /// How one object is seen at one step, and what its tolerance allows.
 pub(super) struct Plan<'a> {
@@ -89,9 +92,10 @@ struct Limits {
 }
 
 /// A part of the object, refined and seen.
-pub(super) struct Surface {
+pub(super) struct Surface<'a> {
     pub(super) name: String,
-    pub(super) part: Part,
+    /// At rest; that of the stage where nothing was refined.
+    pub(super) part: Cow<'a, Part>,
     pub(super) seen: Mesh,
     pub(super) certificate: Certificate,
 }
@@ -140,7 +144,9 @@ impl<'a> Plan<'a> {
     /// About how many triangles the object will have, and whether they will be within the tolerance.
     ///
     /// Of a finer round shape than is at hand each facet stands for several, smaller ones.
-    pub(super) fn foresee(mut self, wanted: Wanted) -> Foresight {
+    ///
+    /// `weights` says for each part of how many triangles each of its own is a sample.
+    pub(super) fn foresee(mut self, wanted: Wanted, weights: &[f64]) -> Foresight {
         let velocity = self.view.relative_velocity();
         let facets = self.shape.as_ref().map_or(0, Shape::triangle_count);
         let (draft, each) = if facets > FACETS_MADE_TO_PREDICT {
@@ -151,32 +157,35 @@ impl<'a> Plan<'a> {
             (self.draft(), 1.0)
         };
         let observer = self.view.observer_rest();
-        let facets = || {
-            draft.parts.iter().flat_map(|(_, part)| {
+        let facets = draft
+            .parts
+            .iter()
+            .zip(weights)
+            .flat_map(|((_, part), weight)| {
                 let mesh = part.mesh();
-                mesh.triangles().iter().map(|corners| {
+                mesh.triangles().iter().map(move |corners| {
                     let positions = corners.map(|corner| mesh.positions()[corner as usize]);
-                    shrunk(positions, each).map(|position| position - observer)
+                    let offsets = shrunk(positions, each).map(|position| position - observer);
+                    (weight * each, offsets)
                 })
-            })
-        };
+            });
+        let facets: Vec<(f64, [DVec3; 3])> = facets.collect();
         if !wanted.subdivide || velocity.rapidity() == 0.0 {
             let prove = |((_, part), seen): (&(String, Part), &Mesh)| {
                 let mesh = part.mesh();
                 self.certificate(&draft.limits, mesh, mesh, seen, self.largest_gap(mesh))
             };
             return Foresight {
-                triangles: each * facets().count() as f64,
+                triangles: facets.iter().map(|(weight, _)| weight).sum(),
                 reachable: (draft.parts.iter().zip(&draft.seen).map(prove)).all(|c| c.complete),
             };
         }
-        let facets: Vec<[DVec3; 3]> = facets().collect();
         let pieces = facets
             .par_iter()
-            .map(|&offsets| each * predicted_pieces(offsets, &draft.limits.allowance));
+            .map(|(weight, offsets)| weight * predicted_pieces(*offsets, &draft.limits.allowance));
         let kept = facets
             .par_iter()
-            .all(|offsets| !draft.limits.allowance.is_at_its_least(offsets));
+            .all(|(_, offsets)| !draft.limits.allowance.is_at_its_least(offsets));
         Foresight {
             // Added up in their order: the same sum for any number of threads.
             triangles: pieces.collect::<Vec<f64>>().iter().sum(),
@@ -185,14 +194,14 @@ impl<'a> Plan<'a> {
     }
 
     /// Refines where that is wanted, maps, and proves.
-    pub(super) fn carry_out(mut self, wanted: Wanted) -> Vec<Surface> {
+    pub(super) fn carry_out(mut self, wanted: Wanted) -> Vec<Surface<'a>> {
         let Draft {
             parts,
             seen,
             limits,
         } = self.draft();
         let refining = wanted.subdivide && self.view.relative_velocity().rapidity() > 0.0;
-        let surface = |((name, part), seen): ((String, Part), Mesh)| {
+        let surface = |((name, part), seen): ((String, Cow<'a, Part>), Mesh)| {
             if !refining {
                 let mesh = part.mesh();
                 let gap = self.largest_gap(mesh);
@@ -214,16 +223,23 @@ impl<'a> Plan<'a> {
             Surface {
                 name,
                 certificate: self.certificate(&limits, mesh, &refined.mesh, &seen, refined.gap),
-                part: part.with_mesh(refined.mesh),
+                part: Cow::Owned(part.with_mesh(refined.mesh)),
                 seen,
             }
         };
-        parts
-            .into_owned()
-            .into_iter()
-            .zip(seen)
-            .map(surface)
-            .collect()
+        let parts: Vec<(String, Cow<'a, Part>)> = match parts {
+            Cow::Borrowed(parts) => {
+                let parts = parts.iter();
+                parts
+                    .map(|(name, part)| (name.clone(), Cow::Borrowed(part)))
+                    .collect()
+            }
+            Cow::Owned(parts) => {
+                let parts = parts.into_iter();
+                parts.map(|(name, part)| (name, Cow::Owned(part))).collect()
+            }
+        };
+        parts.into_iter().zip(seen).map(surface).collect()
     }
 
     /// Carries out the plans of one object for all steps with one mesh at rest, which is refined for one step after
@@ -231,7 +247,10 @@ impl<'a> Plan<'a> {
     ///
     /// What is within the tolerance at one step stays so when it is refined for another: the gap of a triangle is
     /// how far a chord plane is above the convex `r`, and that of a piece of it is below that of the whole.
-    pub(super) fn carry_out_together(mut plans: Vec<Self>, wanted: Wanted) -> Vec<Vec<Surface>> {
+    pub(super) fn carry_out_together(
+        mut plans: Vec<Self>,
+        wanted: Wanted,
+    ) -> Vec<Vec<Surface<'a>>> {
         let shapes = plans
             .iter()
             .filter_map(|plan| Some((plan.shape.clone()?, plan.deviation)));
@@ -252,7 +271,7 @@ impl<'a> Plan<'a> {
             }
             for (_, part) in &mut parts {
                 let refined = refine(part.mesh(), plan.view.observer_rest(), &limits.allowance);
-                *part = part.clone().with_mesh(refined.mesh);
+                *part = part.with_mesh(refined.mesh);
             }
         }
         let mut seen = Self::travelling(&mut plans, &parts);
@@ -263,7 +282,7 @@ impl<'a> Plan<'a> {
                 let gap = plan.largest_gap(mesh);
                 Surface {
                     name: name.clone(),
-                    part: part.clone(),
+                    part: Cow::Owned(part.clone()),
                     certificate: plan.certificate(limits, before.mesh(), mesh, &seen, gap),
                     seen,
                 }
@@ -384,9 +403,17 @@ impl<'a> Plan<'a> {
 
     fn largest_gap(&self, mesh: &Mesh) -> f64 {
         let observer = self.view.observer_rest();
-        let gaps = mesh.triangles().par_iter().map(|corners| {
-            let [a, b, c] = corners.map(|corner| mesh.positions()[corner as usize] - observer);
-            triangle_gap(a, b, c)
+        let chunks = mesh.triangles().par_chunks(TRIANGLES_PER_JOB);
+        let gaps = chunks.map(|chunk| {
+            chunk.iter().fold(0.0, |largest: f64, corners| {
+                let offsets = corners.map(|corner| mesh.positions()[corner as usize] - observer);
+                // Most are known to be smaller than one that was met before.
+                if gap_ceiling(offsets) <= largest {
+                    return largest;
+                }
+                let [a, b, c] = offsets;
+                largest.max(triangle_gap(a, b, c))
+            })
         });
         gaps.reduce(|| 0.0, f64::max)
     }

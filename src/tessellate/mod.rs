@@ -9,6 +9,7 @@
 //! that neighbours always agree, bit for bit.
 
 mod allowance;
+mod ceiling;
 mod certificate;
 mod edge;
 mod gap;
@@ -17,6 +18,7 @@ mod refine;
 mod sky;
 
 pub(crate) use allowance::Allowance;
+pub(crate) use ceiling::gap_ceiling;
 pub(crate) use certificate::{Bounds, Counts, Singles, local_stretch, rounding_bound};
 pub use certificate::{Certificate, Precision};
 pub use gap::{edge_gap, triangle_gap, triangle_gap_place};

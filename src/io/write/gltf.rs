@@ -4,23 +4,23 @@
 //! pyvista and three.js all read alike. Data shared between steps (triangles, texture coordinates,
 //! colours, materials, images) is written once.
 
-use std::collections::HashMap;
-use std::io::Write;
+use std::io::{Read, Seek, Write};
 use std::sync::Arc;
 
 use glam::{DVec3, DVec4};
-use gltf::binary::{Glb, Header};
-use gltf::json::validation::{Checked, USize64};
-use gltf::json::{self, Index, accessor, buffer, extras::RawValue, mesh::Semantic};
+use gltf::json::validation::Checked;
+use gltf::json::{self, Index, accessor, mesh::Semantic};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
-use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::layer::{Scalar, asked_for, layers};
+use super::document::Document;
+use super::layer::{Layer, Scalar};
 use super::materials::Materials;
 use super::pack::{Local, Packed, pack};
 use super::{Export, Playback, WriteError};
-use crate::mesh::{Material, Mesh};
+use crate::mesh::{Material, Mesh, Part};
+use crate::photosurface::{Photosurface, SceneFacts, step_label};
+use crate::scene::Attributes;
 
 /// What may not stand in a relative reference as it is.
 const IN_REFERENCE: &AsciiSet = &CONTROLS
@@ -40,31 +40,8 @@ const IN_REFERENCE: &AsciiSet = &CONTROLS
 ///
 /// A mesh without triangles, a number that `f32` cannot hold, more than 4 GiB, or the writer fails.
 pub fn write_glb(export: &Export<'_>, writer: impl Write) -> Result<(), WriteError> {
-    let (json, binary) = document(export, None)?;
-    let json = serde_json::to_vec(&json).expect("glTF is JSON");
-    let padded = |chunk: &[u8]| chunk.len().next_multiple_of(4) as u64;
-    let bytes = 12 + 8 + padded(&json) + 8 + padded(&binary);
-    if bytes > u64::from(u32::MAX) {
-        return Err(WriteError::TooLarge {
-            format: "GLB",
-            bytes,
-            limit: u64::from(u32::MAX),
-        });
-    }
-    let glb = Glb {
-        // Made anew by `to_writer`.
-        header: Header {
-            magic: *b"glTF",
-            version: 2,
-            length: 0,
-        },
-        json: json.into(),
-        bin: Some(binary.into()),
-    };
-    glb.to_writer(writer).map_err(|error| match error {
-        gltf::Error::Io(error) => WriteError::Stream(error),
-        other => unreachable!("writing only fails with the writer: {other}"),
-    })
+    let data = std::io::Cursor::new(vec![]);
+    file_of(export, data)?.finish_glb(writer)
 }
 
 /// Writes the two parts of a `.gltf` with its data in a file beside it, called `binary_name`.
@@ -75,65 +52,107 @@ pub fn write_glb(export: &Export<'_>, writer: impl Write) -> Result<(), WriteErr
 pub fn write_gltf(
     export: &Export<'_>,
     binary_name: &str,
-    mut json_writer: impl Write,
-    mut binary_writer: impl Write,
+    json_writer: impl Write,
+    binary_writer: impl Write,
 ) -> Result<(), WriteError> {
-    let (json, binary) = document(export, Some(binary_name))?;
-    binary_writer.write_all(&binary)?;
-    let json = serde_json::to_vec_pretty(&json).expect("glTF is JSON");
-    json_writer.write_all(&json)?;
-    json_writer.write_all(b"\n")?;
-    Ok(())
+    file_of(export, binary_writer)?.finish_gltf(binary_name, json_writer)
 }
 
-/// The JSON part and the data of a file.
-fn document(
-    export: &Export<'_>,
-    binary_name: Option<&str>,
-) -> Result<(Value, Vec<u8>), WriteError> {
-    let mut document = Document::default();
+fn file_of<'a, W: Write>(export: &Export<'a>, data: W) -> Result<GltfFile<'a, W>, WriteError> {
+    let attributes = export.photosurfaces.first().map(Photosurface::attributes);
+    let attributes = attributes.unwrap_or_default();
+    let mut file = GltfFile::new(
+        data,
+        export.scene,
+        export.marker,
+        attributes,
+        export.playback,
+    )?;
     match export.playback {
-        Some(Playback::Morph { frames_per_second }) => {
-            document.add_morphing(export, frames_per_second)?;
-        }
-        playback => {
-            let asked_for = asked_for(export);
-            for layer in layers(export) {
-                let scalars = layer.scalars(asked_for)?;
-                let extras = layer.facts.map(raw);
-                document.add(layer.name, &[layer.mesh], layer.material, &scalars, extras)?;
+        Some(Playback::Morph { .. }) => {
+            let of_one_part = |a: &Photosurface, b: &Photosurface| a.facts.step < b.facts.step;
+            for steps in export.photosurfaces.chunk_by(of_one_part) {
+                file.add_morphing(steps)?;
             }
-            if let Some(Playback::Frames { frames_per_second }) = playback {
-                document.animate_frames(export, frames_per_second);
+        }
+        _ => {
+            for photosurface in export.photosurfaces {
+                file.add(photosurface)?;
             }
         }
     }
-    Ok(document.finish(export, binary_name))
+    Ok(file)
 }
 
-/// A glTF document in the making.
-#[derive(Default)]
-pub(super) struct Document {
-    pub(super) root: json::Root,
-    binary: Vec<u8>,
-    /// The `f64` translation of each node; glTF's JSON holds it, `gltf::json` does not.
-    translations: Vec<DVec3>,
-    /// What has been written already, by the address of the shared original.
-    shared: HashMap<usize, Index<json::Accessor>>,
+/// A glTF file in the making: photosurfaces go in one after the other, their data goes on to `W`, and none has to stay
+/// in memory.
+pub struct GltfFile<'a, W> {
+    pub(super) document: Document<W>,
+    pub(super) scene: &'a SceneFacts,
+    pub(super) tracks: super::animation::Tracks,
     materials: Materials,
-    /// Of the one animation, as long as it is being made.
-    pub(super) tracks: (Vec<json::animation::Channel>, Vec<json::animation::Sampler>),
+    attributes: Attributes,
+    playback: Option<Playback>,
 }
 
-impl Document {
+impl<'a, W: Write> GltfFile<'a, W> {
+    /// A file with nothing but the observer's marker; every mesh will have these attributes.
+    ///
+    /// # Errors
+    ///
+    /// The writer fails.
+    pub fn new(
+        data: W,
+        scene: &'a SceneFacts,
+        marker: Option<&Part>,
+        attributes: Attributes,
+        playback: Option<Playback>,
+    ) -> Result<Self, WriteError> {
+        let mut file = Self {
+            document: Document::new(data),
+            scene,
+            tracks: Default::default(),
+            materials: Materials::default(),
+            attributes,
+            playback,
+        };
+        if let Some(marker) = marker {
+            file.add_layer(&Layer::from(marker))?;
+        }
+        Ok(file)
+    }
+
+    /// Adds a photosurface, which must have the attributes of the file.
+    ///
+    /// # Errors
+    ///
+    /// A mesh without triangles, a number that `f32` cannot hold, or the writer fails.
+    pub fn add(&mut self, photosurface: &Photosurface) -> Result<(), WriteError> {
+        let node = self.add_layer(&Layer::from(photosurface))?;
+        if let Some(Playback::Frames { frames_per_second }) = self.playback {
+            self.show_during_its_frame(node, photosurface.facts.step, frames_per_second)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn playback(&self) -> Option<Playback> {
+        self.playback
+    }
+
+    fn add_layer(&mut self, layer: &Layer<'_>) -> Result<Index<json::Node>, WriteError> {
+        let scalars = layer.scalars(self.attributes)?;
+        let extras = layer.facts.map(|facts| json!(facts));
+        self.add_node(layer.name, &[layer.mesh], layer.material, &scalars, extras)
+    }
+
     /// A node with a mesh; `steps` are its geometry at the first step and at those that morph targets are for.
-    pub(super) fn add(
+    pub(super) fn add_node(
         &mut self,
         name: &str,
         steps: &[&Mesh],
         material: Option<&Arc<Material>>,
         scalars: &[Scalar<'_>],
-        extras: json::Extras,
+        extras: Option<Value>,
     ) -> Result<Index<json::Node>, WriteError> {
         let mesh = steps[0];
         if mesh.triangles().is_empty() {
@@ -145,17 +164,15 @@ impl Document {
             local,
             differences,
         } = pack(name, &positions)?;
-        let positions = self.local(&local);
-        let mut attributes = vec![(Semantic::Positions, positions)];
+        let document = &mut self.document;
+        let mut attributes = vec![(Semantic::Positions, document.local(&local)?)];
         if let Some(normals) = mesh.normals() {
             let normals: Vec<[f32; 3]> = normals
                 .iter()
                 .map(|normal| unit_or_up(*normal).as_vec3().to_array())
                 .collect();
-            attributes.push((
-                Semantic::Normals,
-                self.accessor(&normals, accessor::Type::Vec3, None),
-            ));
+            let accessor = document.vectors(&normals, accessor::Type::Vec3)?;
+            attributes.push((Semantic::Normals, accessor));
         }
         if let Some(tangents) = mesh.tangents() {
             let tangents: Vec<[f32; 4]> = tangents
@@ -167,52 +184,35 @@ impl Document {
                         .to_array()
                 })
                 .collect();
-            attributes.push((
-                Semantic::Tangents,
-                self.accessor(&tangents, accessor::Type::Vec4, None),
-            ));
+            let accessor = document.vectors(&tangents, accessor::Type::Vec4)?;
+            attributes.push((Semantic::Tangents, accessor));
         }
         for (set, coordinates) in (0..).zip(mesh.texture_coordinates()) {
-            let accessor = self.shared(address(coordinates), |document| {
+            let accessor = document.shared(coordinates, |document| {
                 let values: Vec<[f32; 2]> = coordinates.iter().map(|c| c.to_array()).collect();
-                document.accessor(&values, accessor::Type::Vec2, None)
-            });
+                document.vectors(&values, accessor::Type::Vec2)
+            })?;
             attributes.push((Semantic::TexCoords(set), accessor));
         }
-        if let Some(colors) = mesh.colors() {
-            let accessor = self.shared(address(colors), |document| {
-                let bytes: Vec<u8> = colors
-                    .iter()
-                    .flat_map(|color| color.to_array().map(to_u8))
-                    .collect();
-                let view = document.view(&bytes, Some(buffer::Target::ArrayBuffer));
-                let kind = (accessor::ComponentType::U8, accessor::Type::Vec4);
-                document.push_accessor(view, colors.len(), kind, true, None)
-            });
+        if let Some(colors) = mesh.shared_colors() {
+            let accessor = document.shared(colors, |document| {
+                let bytes = colors.iter().flat_map(|color| color.to_array().map(to_u8));
+                document.colors(&bytes.collect::<Vec<u8>>())
+            })?;
             attributes.push((Semantic::Colors(0), accessor));
         }
         for scalar in scalars {
             let values: Vec<[f32; 1]> = scalar.values.iter().map(|&v| [v as f32]).collect();
-            let accessor = self.accessor(&values, accessor::Type::Scalar, None);
+            let accessor = document.vectors(&values, accessor::Type::Scalar)?;
             let name = scalar.name.to_ascii_uppercase();
             attributes.push((Semantic::Extras(name), accessor));
         }
         let targets = steps[1..].iter().zip(&differences);
-        let targets: Vec<_> = targets
-            .map(|(step, difference)| self.morph_target(mesh, step, difference))
-            .collect();
-        let triangles = mesh.triangles();
-        let indices = self.shared(address(triangles), |document| {
-            let bytes: Vec<u8> = triangles
-                .as_flattened()
-                .iter()
-                .flat_map(|index| index.to_le_bytes())
-                .collect();
-            let view = document.view(&bytes, Some(buffer::Target::ElementArrayBuffer));
-            let kind = (accessor::ComponentType::U32, accessor::Type::Scalar);
-            document.push_accessor(view, 3 * triangles.len(), kind, false, None)
-        });
-        let material = self.materials.add(material);
+        let targets =
+            targets.map(|(step, difference)| morph_target(document, mesh, step, difference));
+        let targets: Vec<_> = targets.collect::<Result<_, _>>()?;
+        let triangles = mesh.shared_triangles();
+        let indices = document.shared(triangles, |document| document.indices(triangles))?;
         let primitive = json::mesh::Primitive {
             attributes: attributes
                 .into_iter()
@@ -221,198 +221,141 @@ impl Document {
             extensions: None,
             extras: None,
             indices: Some(indices),
-            material: Some(Index::new(material as u32)),
+            material: Some(Index::new(self.materials.add(material) as u32)),
             mode: Checked::Valid(json::mesh::Mode::Triangles),
             targets: Some(targets).filter(|targets| !targets.is_empty()),
         };
-        let mesh = self.root.push(json::Mesh {
-            extensions: None,
-            extras: None,
-            name: Some(name.to_owned()),
-            primitives: vec![primitive],
-            weights: None,
-        });
-        self.translations.push(offset);
-        Ok(self.root.push(json::Node {
-            mesh: Some(mesh),
-            name: Some(name.to_owned()),
-            extras,
-            ..json::Node::default()
-        }))
-    }
-
-    /// What is to be added to the first step's geometry to have that of another.
-    fn morph_target(
-        &mut self,
-        first: &Mesh,
-        step: &Mesh,
-        difference: &Local,
-    ) -> json::mesh::MorphTarget {
-        let normals = first.normals().zip(step.normals()).map(|(from, to)| {
-            let pairs = from.iter().zip(to);
-            let differences = pairs.map(|(&from, &to)| unit_or_up(to) - unit_or_up(from));
-            let differences: Vec<_> = differences.map(|d| d.as_vec3().to_array()).collect();
-            self.accessor(&differences, accessor::Type::Vec3, None)
-        });
-        let tangents = first.tangents().zip(step.tangents()).map(|(from, to)| {
-            let direction = |tangent: &DVec4| unit_or_up(tangent.truncate());
-            let pairs = from.iter().zip(to);
-            let differences = pairs.map(|(from, to)| direction(to) - direction(from));
-            let differences: Vec<_> = differences.map(|d| d.as_vec3().to_array()).collect();
-            self.accessor(&differences, accessor::Type::Vec3, None)
-        });
-        json::mesh::MorphTarget {
-            positions: Some(self.local(difference)),
-            normals,
-            tangents,
+        let mut mesh = json!({ "name": name, "primitives": [primitive] });
+        let targets = steps.len() - 1;
+        if targets > 0 {
+            let names: Vec<_> = (1..=targets).map(step_label).collect();
+            mesh["weights"] = json!(vec![0.0; targets]);
+            mesh["extras"] = json!({ "targetNames": names });
         }
+        let mesh = self.document.meshes.push(&mesh);
+        // `gltf::json` has no room for the offset in f64.
+        let mut node = json!({ "name": name, "mesh": mesh });
+        if offset != DVec3::ZERO {
+            node["translation"] = json!(offset.to_array());
+        }
+        if let Some(extras) = extras {
+            node["extras"] = extras;
+        }
+        Ok(self.document.nodes.push(&node))
     }
 
-    fn finish(mut self, export: &Export<'_>, binary_name: Option<&str>) -> (Value, Vec<u8>) {
-        self.root.asset.generator = Some(export.scene.generator.to_owned());
+    /// Writes a GLB of everything that was added; the data is read back from where it went.
+    ///
+    /// # Errors
+    ///
+    /// More than 4 GiB, the data cannot be read, or the writer fails.
+    pub fn finish_glb(self, mut writer: impl Write) -> Result<(), WriteError>
+    where
+        W: Read + Seek,
+    {
+        let (mut json, mut data, bytes) = self.finish(None)?;
+        json.resize(json.len().next_multiple_of(4), b' ');
+        let padded = bytes.next_multiple_of(4);
+        let all = 12 + 8 + json.len() as u64 + 8 + padded;
+        let limit = u64::from(u32::MAX);
+        if all > limit {
+            return Err(WriteError::TooLarge {
+                format: "GLB",
+                bytes: all,
+                limit,
+            });
+        }
+        let [magic, json_kind, data_kind] = [*b"glTF", *b"JSON", *b"BIN\0"].map(u32::from_le_bytes);
+        for word in [magic, 2, all as u32, json.len() as u32, json_kind] {
+            writer.write_all(&word.to_le_bytes())?;
+        }
+        writer.write_all(&json)?;
+        drop(json);
+        for word in [padded as u32, data_kind] {
+            writer.write_all(&word.to_le_bytes())?;
+        }
+        data.rewind()?;
+        std::io::copy(&mut data, &mut writer)?;
+        writer.write_all(&[0; 4][..(padded - bytes) as usize])?;
+        Ok(())
+    }
+
+    /// Writes a `.gltf` of everything that was added, which refers to the data by the name of its file, and makes sure
+    /// that all of that has gone out.
+    ///
+    /// # Errors
+    ///
+    /// A writer fails.
+    pub fn finish_gltf(
+        self,
+        binary_name: &str,
+        mut json_writer: impl Write,
+    ) -> Result<(), WriteError> {
+        let (json, mut data, _) = self.finish(Some(binary_name))?;
+        data.flush()?;
+        json_writer.write_all(&json)?;
+        json_writer.write_all(b"\n")?;
+        Ok(())
+    }
+
+    /// The JSON, the stream of data and how much of that there is.
+    fn finish(mut self, binary_name: Option<&str>) -> Result<(Vec<u8>, W, u64), WriteError> {
+        let mut scene_extras = json!(self.scene);
+        if let Some(playback) = self.playback {
+            let frames_per_second = playback.frames_per_second();
+            scene_extras["frames_per_second"] = frames_per_second.into();
+            self.animate(frames_per_second);
+        }
         let images = self.materials.images().to_vec();
-        let views: Vec<usize> = images
-            .iter()
-            .map(|image| self.view(image.bytes(), None).value())
-            .collect();
-        self.root.push(json::Buffer {
-            byte_length: USize64::from(self.binary.len()),
-            name: None,
-            uri: binary_name.map(|name| utf8_percent_encode(name, IN_REFERENCE).to_string()),
-            extensions: None,
-            extras: None,
+        let views = images.iter().map(|image| {
+            let view = self.document.view(image.bytes(), None)?;
+            Ok(view.value())
         });
-        let scene = self.root.push(json::Scene {
-            extensions: None,
-            extras: Some(raw(export.scene)),
-            name: export.scene.title.clone(),
-            nodes: (0..self.root.nodes.len() as u32).map(Index::new).collect(),
+        let views: Vec<usize> = views.collect::<Result<_, WriteError>>()?;
+        let mut scene = json!({
+            "extras": scene_extras,
+            "nodes": (0..self.document.nodes.len()).collect::<Vec<_>>(),
         });
-        self.root.scene = Some(scene);
-        let mut root = serde_json::to_value(&self.root).expect("glTF is JSON");
-        for (node, offset) in self.translations.iter().enumerate() {
-            if *offset != DVec3::ZERO {
-                root["nodes"][node]["translation"] = json!(offset.to_array());
-            }
+        if let Some(title) = &self.scene.title {
+            scene["name"] = json!(title);
         }
-        self.materials.write_into(&mut root, &views);
-        (root, self.binary)
-    }
-
-    /// Writes what `make` makes once for all who share it.
-    fn shared(
-        &mut self,
-        address: usize,
-        make: impl FnOnce(&mut Self) -> Index<json::Accessor>,
-    ) -> Index<json::Accessor> {
-        if let Some(&accessor) = self.shared.get(&address) {
-            return accessor;
-        }
-        let accessor = make(self);
-        self.shared.insert(address, accessor);
-        accessor
-    }
-
-    fn local(&mut self, local: &Local) -> Index<json::Accessor> {
-        let bounds = Some((local.min, local.max));
-        self.accessor(&local.values, accessor::Type::Vec3, bounds)
-    }
-
-    fn accessor<const N: usize>(
-        &mut self,
-        values: &[[f32; N]],
-        shape: accessor::Type,
-        bounds: Option<([f32; N], [f32; N])>,
-    ) -> Index<json::Accessor> {
-        let bytes: Vec<u8> = values
-            .as_flattened()
-            .iter()
-            .flat_map(|value| value.to_le_bytes())
-            .collect();
-        let view = self.view(&bytes, Some(buffer::Target::ArrayBuffer));
-        let bounds = bounds.map(|(min, max)| (min.to_vec(), max.to_vec()));
-        self.push_accessor(
-            view,
-            values.len(),
-            (accessor::ComponentType::F32, shape),
-            false,
-            bounds,
-        )
-    }
-
-    /// Numbers that are no attributes of vertices: key frames.
-    pub(super) fn keys<const N: usize>(
-        &mut self,
-        values: &[[f32; N]],
-        shape: accessor::Type,
-    ) -> Index<json::Accessor> {
-        let bytes: Vec<u8> = (values.as_flattened().iter())
-            .flat_map(|value| value.to_le_bytes())
-            .collect();
-        let view = self.view(&bytes, None);
-        let bounds = |least: fn(f32, f32) -> f32, start: f32| {
-            let axis = |axis: usize| values.iter().fold(start, |b, v| least(b, v[axis]));
-            (0..N).map(axis).collect()
-        };
-        let bounds = (
-            bounds(f32::min, f32::INFINITY),
-            bounds(f32::max, f32::NEG_INFINITY),
-        );
-        let kind = (accessor::ComponentType::F32, shape);
-        self.push_accessor(view, values.len(), kind, false, Some(bounds))
-    }
-
-    fn push_accessor(
-        &mut self,
-        view: Index<buffer::View>,
-        count: usize,
-        (component, shape): (accessor::ComponentType, accessor::Type),
-        normalized: bool,
-        bounds: Option<(Vec<f32>, Vec<f32>)>,
-    ) -> Index<json::Accessor> {
-        let (min, max) = bounds.unzip();
-        self.root.push(json::Accessor {
-            buffer_view: Some(view),
-            byte_offset: None,
-            count: USize64::from(count),
-            component_type: Checked::Valid(accessor::GenericComponentType(component)),
-            extensions: None,
-            extras: None,
-            type_: Checked::Valid(shape),
-            // f32 as f64 prints every digit that tells it apart, so that bounds read back exactly.
-            min: min.map(|min| json!(min)),
-            max: max.map(|max| json!(max)),
-            name: None,
-            normalized,
-            sparse: None,
-        })
-    }
-
-    fn view(&mut self, bytes: &[u8], target: Option<buffer::Target>) -> Index<buffer::View> {
-        // Every view starts at a multiple of four, whatever an image's length.
-        self.binary.resize(self.binary.len().next_multiple_of(4), 0);
-        let offset = self.binary.len();
-        self.binary.extend_from_slice(bytes);
-        self.root.push(buffer::View {
-            buffer: Index::new(0),
-            byte_length: USize64::from(bytes.len()),
-            byte_offset: Some(USize64::from(offset)),
-            byte_stride: None,
-            name: None,
-            target: target.map(Checked::Valid),
-            extensions: None,
-            extras: None,
-        })
+        let mut others = json!({
+            "asset": { "generator": self.scene.generator, "version": "2.0" },
+            "scene": 0,
+            "scenes": [scene],
+        });
+        self.materials.write_into(&mut others, &views);
+        let uri = binary_name.map(|name| utf8_percent_encode(name, IN_REFERENCE).to_string());
+        let bytes = self.document.bytes();
+        let (json, data) = self.document.finish(&others, uri);
+        Ok((json, data, bytes))
     }
 }
 
-pub(super) fn raw(facts: &impl Serialize) -> Box<RawValue> {
-    serde_json::value::to_raw_value(facts).expect("facts are names and numbers")
-}
-
-/// Tells shared data apart: it lives as long as the export, at its own address.
-fn address<T>(shared: &[T]) -> usize {
-    shared.as_ptr() as usize
+/// What is to be added to the first step's geometry to have that of another.
+fn morph_target<W: Write>(
+    document: &mut Document<W>,
+    first: &Mesh,
+    step: &Mesh,
+    difference: &Local,
+) -> Result<json::mesh::MorphTarget, WriteError> {
+    let mut differences = |from: Vec<DVec3>, to: Vec<DVec3>| {
+        let pairs = from.iter().zip(&to);
+        let differences = pairs.map(|(&from, &to)| unit_or_up(to) - unit_or_up(from));
+        let differences: Vec<_> = differences.map(|d| d.as_vec3().to_array()).collect();
+        document.vectors(&differences, accessor::Type::Vec3)
+    };
+    let directions = |tangents: &[DVec4]| tangents.iter().map(|t| t.truncate()).collect();
+    let normals = first.normals().zip(step.normals());
+    let normals = normals.map(|(from, to)| differences(from.to_vec(), to.to_vec()));
+    let tangents = first.tangents().zip(step.tangents());
+    let tangents = tangents.map(|(from, to)| differences(directions(from), directions(to)));
+    let (normals, tangents) = (normals.transpose()?, tangents.transpose()?);
+    Ok(json::mesh::MorphTarget {
+        positions: Some(document.local(difference)?),
+        normals,
+        tangents,
+    })
 }
 
 /// Files must hold unit vectors; a degenerate triangle has none of its own.

@@ -6,8 +6,9 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::{Export, WriteError};
-use crate::mesh::{Material, Mesh};
+use crate::mesh::{Material, Mesh, Part};
 use crate::photosurface::{Facts, Photosurface, VertexData};
+use crate::scene::Attributes;
 
 /// One mesh of a file.
 #[derive(Clone, Copy, Debug)]
@@ -30,16 +31,22 @@ pub(super) struct Scalar<'a> {
 
 /// The marker, if there is one, and all photosurfaces.
 pub(super) fn layers<'a>(export: &'a Export<'_>) -> impl Iterator<Item = Layer<'a>> {
-    let marker = export.marker.map(|marker| Layer {
-        name: &marker.name,
-        mesh: marker.mesh(),
-        material: marker.material.as_ref(),
-        facts: None,
-        vertex_data: None,
-    });
+    let marker = export.marker.map(Layer::from);
     marker
         .into_iter()
         .chain(export.photosurfaces.iter().map(Layer::from))
+}
+
+impl<'a> From<&'a Part> for Layer<'a> {
+    fn from(marker: &'a Part) -> Self {
+        Self {
+            name: &marker.name,
+            mesh: marker.mesh(),
+            material: marker.material.as_ref(),
+            facts: None,
+            vertex_data: None,
+        }
+    }
 }
 
 impl<'a> From<&'a Photosurface> for Layer<'a> {
@@ -55,13 +62,13 @@ impl<'a> From<&'a Photosurface> for Layer<'a> {
 }
 
 impl<'a> Layer<'a> {
-    /// The numbers at every vertex that `like` asks for; the marker, at rest and seen where it is, has them too,
+    /// The numbers at every vertex that are asked for; the marker, at rest and seen where it is, has them too,
     /// for programs drop what not every mesh has.
     ///
     /// # Errors
     ///
     /// A number that `f32` cannot hold.
-    pub(super) fn scalars(&self, like: Option<&VertexData>) -> Result<Vec<Scalar<'a>>, WriteError> {
+    pub(super) fn scalars(&self, asked_for: Attributes) -> Result<Vec<Scalar<'a>>, WriteError> {
         let positions = self.mesh.positions();
         let mut scalars = vec![];
         let mut add = |name, words, values: Cow<'a, [f64]>| {
@@ -80,24 +87,21 @@ impl<'a> Layer<'a> {
                 }
             }
         };
-        let Some(like) = like else {
-            return Ok(scalars);
-        };
         let own = |of: fn(&VertexData) -> Option<&Vec<f64>>| {
             Some(Cow::Borrowed(of(self.vertex_data?)?.as_slice()))
         };
-        if like.doppler_factors.is_some() {
+        if asked_for.doppler {
             let factors = own(|data| data.doppler_factors.as_ref());
             let factors = factors.unwrap_or_else(|| vec![1.0; positions.len()].into());
             add("doppler", "the Doppler factor", factors)?;
         }
-        if like.emission_times.is_some() {
+        if asked_for.emission_time {
             let times = own(|data| data.emission_times.as_ref());
             let now = || positions.iter().map(|position| -position.length());
             let times = times.unwrap_or_else(|| now().collect());
             add("emission_time", "the emission time", times)?;
         }
-        if like.rest_positions.is_some() {
+        if asked_for.rest_position {
             let places = self
                 .vertex_data
                 .and_then(|data| data.rest_positions.as_ref());
@@ -109,10 +113,4 @@ impl<'a> Layer<'a> {
         }
         Ok(scalars)
     }
-}
-
-/// What is asked for of every vertex: the same of all photosurfaces of a file.
-pub(super) fn asked_for<'a>(export: &'a Export<'_>) -> Option<&'a VertexData> {
-    let first = export.photosurfaces.first();
-    first.map(|photosurface| &photosurface.vertex_data)
 }

@@ -1,6 +1,7 @@
 //! Photosurfaces as files: glTF, GLB, PLY, and the JSON report.
 
 mod animation;
+mod document;
 mod error;
 mod file;
 mod gltf;
@@ -14,7 +15,7 @@ mod size;
 
 pub use error::WriteError;
 pub use file::{abandon_writes, destination, write_whole};
-pub use gltf::{write_glb, write_gltf};
+pub use gltf::{GltfFile, write_glb, write_gltf};
 pub use ply::write_ply;
 pub use report::{Report, StageTime};
 pub use size::Format;

@@ -10,9 +10,10 @@ use std::io::Write;
 
 use glam::{DVec3, Vec4};
 
-use super::layer::{Layer, Scalar, asked_for, layers};
+use super::layer::{Layer, Scalar, layers};
 use super::{Export, WriteError};
 use crate::mesh::Mesh;
+use crate::photosurface::Photosurface;
 
 /// Writes one PLY, all photosurfaces at once.
 ///
@@ -33,7 +34,8 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
     if vertices > u32::MAX as usize {
         return Err(WriteError::TooManyVertices(vertices));
     }
-    let asked_for = asked_for(export);
+    let asked_for = export.photosurfaces.first().map(Photosurface::attributes);
+    let asked_for = asked_for.unwrap_or_default();
     let mut scalars = vec![];
     for layer in &layers {
         check_positions(layer.name, layer.mesh)?;

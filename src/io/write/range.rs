@@ -27,7 +27,7 @@ impl Format {
                     Self::Glb | Self::Gltf => drop(pack(name, &[mesh.positions()])?),
                     Self::Ply => check_positions(name, mesh)?,
                 }
-                Layer::from(&photosurface).scalars(Some(&photosurface.vertex_data))?;
+                Layer::from(&photosurface).scalars(wanted.attributes)?;
             }
         }
         Ok(())
