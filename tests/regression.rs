@@ -257,3 +257,21 @@ fn a_file_name_need_not_be_text() {
     assert!(status.unwrap().success());
     assert!(name(b"\xfe_step000.glb").exists());
 }
+
+/// With the observer in a face's plane the chart of the sky is all but a line; where a piece turned over in it, the
+/// plain strip was taken: 8000 times what was asked for, and told as certain beforehand.
+#[test]
+fn a_face_seen_edge_on_is_refined_like_any_other() {
+    let workplace = Workplace::new();
+    workplace.write(
+        "face.obj",
+        "v -8 0 -7\nv -6 0 -7\nv -6 0 -5\nv -8 0 -5\nf 1 3 2\nf 1 4 3\n",
+    );
+    for tolerance in ["abs:1", "abs:0.3"] {
+        workplace
+            .run(&format!(
+                "export face.obj --gamma 1e6 --observer 0,0,0 --tolerance {tolerance} -o out.glb"
+            ))
+            .success();
+    }
+}

@@ -25,7 +25,7 @@ pub(super) struct AccuracyArgs {
     #[arg(
         long,
         value_name = "N",
-        default_value_t = 20_000_000,
+        default_value_t = 20_000_000, value_parser = whole_number,
         allow_negative_numbers = true
     )]
     max_triangles: u64,
@@ -210,6 +210,15 @@ impl Tally {
     }
 }
 
+/// `1000000` or `1e6`
+fn whole_number(text: &str) -> anyhow::Result<u64> {
+    let number: f64 = text.trim().parse().unwrap_or(f64::NAN);
+    // Below 2^53 every whole number is one in f64 too.
+    let is_whole = number >= 0.0 && number < 9e15 && number.fract() == 0.0;
+    ensure!(is_whole, "expected a whole number such as 1000000 or 1e6");
+    Ok(number as u64)
+}
+
 /// `1e-3`, `abs:0.01` or `deg:0.02`
 fn tolerance(text: &str) -> anyhow::Result<Tolerance> {
     let number = |text: &str| -> anyhow::Result<f64> {
@@ -229,6 +238,16 @@ fn tolerance(text: &str) -> anyhow::Result<Tolerance> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn whole_numbers_may_have_an_exponent() {
+        assert_eq!(whole_number("0").unwrap(), 0);
+        assert_eq!(whole_number("20000000").unwrap(), 20_000_000);
+        assert_eq!(whole_number("1e6").unwrap(), 1_000_000);
+        for wrong in ["", "-5", "1.5", "1e20", "inf", "nan", "many"] {
+            assert!(whole_number(wrong).is_err(), "{wrong}");
+        }
+    }
 
     #[test]
     fn tolerances_are_read_in_their_three_units() {

@@ -46,9 +46,7 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<()> {
         if let Err(error) = Format::Glb.least_size(&stage, stage.scene().steps().len()) {
             verbosity.note(error);
         }
-        if let Err(error) = Format::Glb.check_range(&stage) {
-            verbosity.note(error);
-        }
+        Format::Glb.check_range(&stage)?;
         let wanted = args.accuracy.wanted(Precision::Single);
         let (stage, predictions) = args.accuracy.within_budget(stage, wanted, verbosity);
         print(|out| table(&stage, &predictions, out))?;

@@ -1,5 +1,6 @@
 //! What the tolerances of a scene will take, and what a budget leaves of them.
 
+use super::plan::Foresight;
 use super::{Placed, Stage, Wanted};
 use crate::mesh::{Mesh, Part};
 
@@ -19,6 +20,10 @@ const MAX_LOOSENING: f64 = 1e300;
 const USED: f64 = 0.7;
 const MAX_HALVINGS: usize = 12;
 
+/// Where even the loosest aim takes more than there is, so many times as much is spent: the last few per cent would
+/// take a tolerance that says nothing any more.
+const SPENT_AT_LEAST: f64 = 1.05;
+
 /// What one object will take, known in a fraction of the time that it takes to make it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prediction {
@@ -36,7 +41,13 @@ impl Stage {
     pub fn predictions(&self, wanted: Wanted) -> Vec<Prediction> {
         let objects = 0..self.objects.len();
         objects
-            .map(|object| self.prediction(object, wanted))
+            .map(|object| {
+                let foresight = self.foresee(object, wanted);
+                Prediction {
+                    triangles: foresight.triangles,
+                    reachable: foresight.reachable,
+                }
+            })
             .collect()
     }
 
@@ -48,8 +59,12 @@ impl Stage {
     /// tolerances of the scene. Triangles that are there before any refinement stay, even if they are more.
     #[must_use]
     pub fn within_budget(mut self, wanted: Wanted, most: u64) -> (Self, Vec<f64>) {
-        let needed =
-            |stage: &Self, object| PREDICTION_ROOM * stage.prediction(object, wanted).triangles;
+        let needed = |stage: &Self, object| {
+            let Foresight {
+                triangles, before, ..
+            } = stage.foresee(object, wanted);
+            before + PREDICTION_ROOM * (triangles - before)
+        };
         let mut objects: Vec<(usize, f64)> = (0..self.objects.len())
             .map(|object| (object, needed(&self, object)))
             .collect();
@@ -66,20 +81,25 @@ impl Stage {
         (self, loosening)
     }
 
-    /// Loosens the aim of one object until it needs no more than its share, and hardly less; what it needs then.
+    /// Loosens the aim of one object until it needs no more than its share, and hardly less; what it needs then. An
+    /// object that needs more however loose it is comes near to that.
     fn loosen(
         &mut self,
         object: usize,
-        share: f64,
+        mut share: f64,
         mut need: f64,
         needed: impl Fn(&Self, usize) -> f64,
     ) -> f64 {
+        self.objects[object].loosening = MAX_LOOSENING;
+        let least = needed(self, object);
+        share = share.max(SPENT_AT_LEAST * least);
         let mut too_tight = 1.0;
         let mut loosening: f64 = 1.0;
+        self.objects[object].loosening = loosening;
         while need > share && loosening < MAX_LOOSENING {
             too_tight = loosening;
             // Triangles go with the inverse of the tolerance, but for those that are there anyway.
-            loosening = (loosening * (need / share).max(1.5)).min(MAX_LOOSENING);
+            loosening = (loosening * (need / share).max(2.0)).min(MAX_LOOSENING);
             self.objects[object].loosening = loosening;
             need = needed(self, object);
         }
@@ -101,7 +121,8 @@ impl Stage {
         need
     }
 
-    fn prediction(&self, object: usize, wanted: Wanted) -> Prediction {
+    /// All steps together.
+    fn foresee(&self, object: usize, wanted: Wanted) -> Foresight {
         let (object, placed) = (&self.scene.objects()[object], &self.objects[object]);
         let sketch = wanted.subdivide.then(|| placed.sketch()).flatten();
         let (placed, weights) = match &sketch {
@@ -110,18 +131,21 @@ impl Stage {
         };
         let steps = self.scene.steps().len();
         let looked_at = steps.min(STEPS_LOOKED_AT);
-        let mut prediction = Prediction {
+        let mut sum = Foresight {
             triangles: 0.0,
+            before: 0.0,
             reachable: true,
         };
+        let each = steps as f64 / looked_at as f64;
         for index in 0..looked_at {
             let step = index * (steps - 1) / (looked_at - 1).max(1);
             let plan = self.plan(object, placed, step, wanted);
             let foresight = plan.foresee(wanted, &weights);
-            prediction.triangles += foresight.triangles * steps as f64 / looked_at as f64;
-            prediction.reachable &= foresight.reachable;
+            sum.triangles += foresight.triangles * each;
+            sum.before += foresight.before * each;
+            sum.reachable &= foresight.reachable;
         }
-        prediction
+        sum
     }
 }
 

@@ -12,7 +12,7 @@ use crate::mesh::{Mesh, Part, Shape};
 use crate::scene::Tolerance;
 use crate::tessellate::{
     Allowance, Bounds, Certificate, Counts, Precision, Singles, gap_ceiling, local_stretch,
-    minimum_triangles, predicted_pieces, refine, rounding_bound, triangle_gap,
+    minimum_triangles, nearest_point, predicted_pieces, refine, rounding_bound, triangle_gap,
 };
 
 /// What part of the tolerance of a curved shape its facets may use; the rest is for the gap between them.
@@ -31,6 +31,9 @@ const LEAST_FOR_GAP: f64 = 0.1;
 /// Where an angle is the tolerance of a curved shape, it is one at this part of the shape's size at least: an
 /// observer who touches it sees any facet under a large angle.
 const NEAREST: f64 = 0.01;
+
+/// And this for one who does not: nearer than that is as good as touching.
+const NEAREST_OF_ALL: f64 = 1e-5;
 
 /// Where an angle is the tolerance, no triangle is made smaller than this part of the mesh: where the observer
 /// touches a surface, any gap is seen under the same angle.
@@ -67,6 +70,8 @@ pub(super) struct Plan<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Foresight {
     pub(super) triangles: f64,
+    /// Of those, how many there are before any refinement.
+    pub(super) before: f64,
     pub(super) reachable: bool,
 }
 
@@ -89,6 +94,7 @@ struct Limits {
     whole: Allowance,
     /// What curvature and rounding leave of the length aimed at; negative where they take more.
     left: f64,
+    rounding: f64,
 }
 
 /// A part of the object, refined and seen.
@@ -124,7 +130,7 @@ impl<'a> Plan<'a> {
         };
         if let Some(shaped) = &placed.shaped {
             let mesh = placed.parts[0].1.mesh();
-            let rounding = plan.rounding(mesh, &plan.seen[0]);
+            let rounding = plan.rounding(mesh, &plan.seen[0], 0.0);
             let target = CURVATURE_SHARE * plan.deviation_allowed(rounding, mesh);
             let shape = match wanted.subdivide {
                 true => shaped.shape.within(target / shaped.largest_scale),
@@ -170,26 +176,42 @@ impl<'a> Plan<'a> {
                 })
             });
         let facets: Vec<(f64, [DVec3; 3])> = facets.collect();
+        let before = facets.iter().map(|(weight, _)| weight).sum();
         if !wanted.subdivide || velocity.rapidity() == 0.0 {
             let prove = |((_, part), seen): (&(String, Part), &Mesh)| {
                 let mesh = part.mesh();
                 self.certificate(&draft.limits, mesh, mesh, seen, self.largest_gap(mesh))
             };
             return Foresight {
-                triangles: facets.iter().map(|(weight, _)| weight).sum(),
+                triangles: before,
+                before,
                 reachable: (draft.parts.iter().zip(&draft.seen).map(prove)).all(|c| c.complete),
             };
         }
         let pieces = facets
             .par_iter()
             .map(|(weight, offsets)| weight * predicted_pieces(*offsets, &draft.limits.allowance));
-        let kept = facets
-            .par_iter()
-            .all(|(_, offsets)| !draft.limits.allowance.is_at_its_least(offsets));
+        let reachable = match self.aimed {
+            Tolerance::Angle(degrees) => {
+                let least = (1.0 - LEAST_FOR_GAP) * degrees.to_radians().sin();
+                facets.par_iter().all(|(_, offsets)| {
+                    let nearest = self.nearest(*offsets);
+                    let stretch = || local_stretch(&self.view, offsets.map(|o| o + observer));
+                    let taken = match self.deviation {
+                        0.0 => draft.limits.rounding,
+                        deviation => draft.limits.rounding + deviation * stretch(),
+                    };
+                    !draft.limits.allowance.is_at_its_least(&[nearest])
+                        && taken <= least * self.view.seen_distance(nearest)
+                })
+            }
+            _ => draft.limits.left >= LEAST_FOR_GAP * self.aimed_length,
+        };
         Foresight {
             // Added up in their order: the same sum for any number of threads.
             triangles: pieces.collect::<Vec<f64>>().iter().sum(),
-            reachable: kept && draft.limits.left >= LEAST_FOR_GAP * self.aimed_length,
+            before,
+            reachable,
         }
     }
 
@@ -325,7 +347,7 @@ impl<'a> Plan<'a> {
             gap: self.view.relative_velocity().gamma_beta() * gap * (1.0 + 4.0 * f64::EPSILON),
             deviation: self.deviation,
             curvature: limits.curvature,
-            rounding: self.rounding(refined, seen),
+            rounding: self.rounding(refined, seen, 0.0),
         };
         let counts = Counts {
             triangles_in: mesh.triangles().len(),
@@ -376,8 +398,13 @@ impl<'a> Plan<'a> {
             });
             curvature = self.deviation * stretches.reduce(|| 0.0, f64::max);
         }
+        // What is refined reaches farther than its corners, by the gap at most.
+        let bulge = self.view.relative_velocity().gamma_beta();
         let rounding = (seen.iter().zip(parts))
-            .map(|(seen, (_, part))| self.rounding(part.mesh(), seen))
+            .map(|(seen, (_, part))| {
+                let mesh = part.mesh();
+                self.rounding(mesh, seen, bulge * self.largest_gap(mesh))
+            })
             .fold(0.0, f64::max);
         let left = self.aimed_length - curvature - rounding;
         Limits {
@@ -385,20 +412,22 @@ impl<'a> Plan<'a> {
             whole: self.allowance(self.tolerance, self.length, 0.0, 0.0, seen),
             curvature,
             left,
+            rounding,
         }
     }
 
-    fn rounding(&self, mesh: &Mesh, seen: &Mesh) -> f64 {
+    /// A bound of the rounding of a mesh, also when it is refined so that it reaches farther by `bulge`.
+    fn rounding(&self, mesh: &Mesh, seen: &Mesh, bulge: f64) -> f64 {
         let (center, radius) = ball(mesh);
         let stretch = self.view.stretch_bound(center, radius);
         let in_file = match (self.precision, self.travel.or(seen.bounds())) {
             (Precision::Single, Some((low, high))) => Some(Singles {
-                extent: high - low,
+                extent: high - low + bulge,
                 roundings: if self.travel.is_some() { 3.0 } else { 1.0 },
             }),
             _ => None,
         };
-        rounding_bound(&self.view, mesh, seen, stretch, in_file)
+        rounding_bound(&self.view, mesh, seen, stretch, in_file) + 16.0 * f64::EPSILON * bulge
     }
 
     fn largest_gap(&self, mesh: &Mesh) -> f64 {
@@ -421,15 +450,28 @@ impl<'a> Plan<'a> {
     /// How far from a curved surface facets may be, at rest, if they were all that a tolerance is used for.
     fn deviation_allowed(&self, rounding: f64, mesh: &Mesh) -> f64 {
         let left = (self.aimed_length - rounding).max(0.5 * self.aimed_length);
+        let corners_of = |corners: &[u32; 3]| {
+            corners.map(|corner| mesh.positions()[corner as usize] - self.view.observer_rest())
+        };
+        let touched = || {
+            let mut facets = mesh.triangles().iter().map(corners_of);
+            facets.any(|offsets| self.nearest(offsets) == DVec3::ZERO)
+        };
+        let least = match self.aimed {
+            Tolerance::Angle(degrees) => {
+                let share = if touched() { NEAREST } else { NEAREST_OF_ALL };
+                let diagonal = length_of(Tolerance::Relative(1.0), &self.seen);
+                share * diagonal * degrees.to_radians().sin()
+            }
+            _ => 0.0,
+        };
         let allowed = |corners: &[u32; 3]| {
             let positions = corners.map(|corner| mesh.positions()[corner as usize]);
             let here = match self.aimed {
                 Tolerance::Angle(degrees) => {
-                    let offsets = positions.map(|position| position - self.view.observer_rest());
-                    let distances = offsets.map(|offset| self.view.seen_distance(offset));
-                    let nearest = distances.into_iter().fold(f64::INFINITY, f64::min);
+                    let nearest = self.view.seen_distance(self.nearest(corners_of(corners)));
                     // The facets that this leads to are other ones: a little room for their distances.
-                    (0.9 * degrees.to_radians().sin() * nearest).max(left)
+                    (0.9 * degrees.to_radians().sin() * nearest).max(least)
                 }
                 _ => left,
             };
@@ -437,6 +479,16 @@ impl<'a> Plan<'a> {
         };
         let all = mesh.triangles().par_iter().map(allowed);
         all.reduce(|| f64::INFINITY, f64::min)
+    }
+
+    /// The place of a facet nearest to the observer, or one nearer than any of the curved surface that it stands for.
+    fn nearest(&self, offsets: [DVec3; 3]) -> DVec3 {
+        let nearest = nearest_point(offsets);
+        let deviation = match &self.placed.shaped {
+            Some(shaped) => shaped.shape.deviation() * shaped.largest_scale,
+            None => 0.0,
+        };
+        nearest * (1.0 - deviation / nearest.length()).max(0.0)
     }
 
     /// The gap `e` that a tolerance allows when `curvature` and `rounding` leave `left` of its length.

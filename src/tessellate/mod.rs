@@ -14,6 +14,7 @@ mod certificate;
 mod edge;
 mod gap;
 mod minimum;
+mod nearest;
 mod refine;
 mod sky;
 
@@ -23,4 +24,5 @@ pub(crate) use certificate::{Bounds, Counts, Singles, local_stretch, rounding_bo
 pub use certificate::{Certificate, Precision};
 pub use gap::{edge_gap, triangle_gap, triangle_gap_place};
 pub(crate) use minimum::{minimum_triangles, predicted_pieces};
+pub(crate) use nearest::nearest_point;
 pub(crate) use refine::refine;

@@ -29,8 +29,14 @@ const AIM: f64 = 0.95;
 /// A point this near to an edge of the boundary, against the edge's length, would make a flat triangle.
 const TOO_NEAR: f64 = 0.225;
 
-/// How often the chart is flattened before the plain strip is taken.
-const CHARTS: u32 = 3;
+/// How many charts are tried, each flatter by this factor, before the plain strip is taken. Where the observer is in
+/// the triangle's plane, the first is all but a line, in which faces next to the boundary may turn over; each flatter
+/// one needs more points.
+const CHARTS: i32 = 8;
+const FLATTER: f64 = 4.0;
+
+/// More points than this are not spent on a chart that does not fit.
+const MOST_MORE: f64 = 1e6;
 
 /// A point on the boundary of the triangle, or inside.
 #[derive(Clone, Copy, Debug)]
@@ -76,21 +82,28 @@ pub(super) fn divide(
         .height
         .max((2.0 * smallest * plane.nearest).sqrt())
         .max(smallest);
+    let mut best: Option<Pieces> = None;
     for flattening in 0..CHARTS {
         let chart = Chart {
             plane,
-            height: height * 64f64.powi(flattening as i32),
+            height: height * FLATTER.powi(flattening),
         };
         let mut front = match Front::new(chart, positions, observer, boundary, allowance) {
             Some(front) => front,
             None => continue,
         };
-        front.advance(most_points);
-        if let Some(pieces) = front.finish() {
+        front.advance(most_points + chart.points(smallest));
+        let Some(pieces) = front.finish() else {
+            continue;
+        };
+        if pieces.complete {
             return pieces;
         }
+        if best.as_ref().is_none_or(|best| pieces.gap < best.gap) {
+            best = Some(pieces);
+        }
     }
-    strip(boundary, allowance)
+    best.unwrap_or_else(|| strip(boundary, allowance))
 }
 
 /// The plane of a triangle, with coordinates from the point nearest to the observer.
@@ -156,6 +169,16 @@ impl Chart {
 
     fn chart_to_place(&self, w: DVec2) -> DVec2 {
         w * (2.0 * self.height / (1.0 - w.length_squared()))
+    }
+
+    /// How many points more than the sky asks for a flatter chart may take.
+    fn points(&self, allowed: f64) -> usize {
+        if self.height <= self.plane.height {
+            return 0;
+        }
+        let reach = self.plane.nearest.max(self.height);
+        let share = self.height * self.plane.area / (reach * reach * allowed);
+        share.min(MOST_MORE) as usize
     }
 
     /// The square of the metric's factor: lengths in the chart times it are lengths in which a gap `e` is an

@@ -15,7 +15,7 @@ pub enum WriteError {
     /// A number beyond the range of the file's `f32`.
     #[error(
         "{quantity} of vertex {vertex} of the photosurface \"{name}\" is {value:e}, beyond what 32-bit \
-         numbers of a file hold ({limit:e}); choose a smaller rapidity, or a larger unit of length"
+         numbers of a file hold ({limit:e}); choose a smaller rapidity or, for lengths and times, a larger unit"
     )]
     Range {
         /// Which photosurface.
