@@ -214,7 +214,7 @@ impl Tally {
 fn whole_number(text: &str) -> anyhow::Result<u64> {
     let number: f64 = text.trim().parse().unwrap_or(f64::NAN);
     // Below 2^53 every whole number is one in f64 too.
-    let is_whole = number >= 0.0 && number < 9e15 && number.fract() == 0.0;
+    let is_whole = (0.0..9e15).contains(&number) && number.fract() == 0.0;
     ensure!(is_whole, "expected a whole number such as 1000000 or 1e6");
     Ok(number as u64)
 }
