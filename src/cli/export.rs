@@ -1,18 +1,17 @@
 //! `photosurface export`: photosurfaces as meshes.
 
-use std::collections::{HashMap, HashSet};
 use std::ffi::OsStr;
 use std::fs;
-use std::io::{IsTerminal, Write, stderr, stdout};
+use std::io::{IsTerminal, Write, stdout};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, bail, ensure};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use photosurface::{
     Attribute, Export, Facts, Format, GltfFile, Playback, Precision, Report, Scene, Stage,
-    StageTime, Wanted, WriteError, destination, step_label, write_ply, write_whole,
+    StageTime, Wanted, WriteError, write_ply, write_whole,
 };
 
 use tempfile::{SpooledTempFile, spooled_tempfile, spooled_tempfile_in};
@@ -22,6 +21,10 @@ use super::accuracy::{AccuracyArgs, Tally};
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print, size};
+use super::output::{
+    check_destinations, extension, file_for_each, from_first_to_last, is_stdout, progress_bar,
+    with_suffix,
+};
 
 /// Write photosurfaces as meshes
 ///
@@ -126,7 +129,7 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
                 .map(|report| with_suffix(report, &suffix)),
         })
         .collect();
-    check_destinations(&levels, format, &input.files)?;
+    check_destinations(outputs(&levels, format), &input.files)?;
     clock.stop("read");
 
     let mut status = Status::Done;
@@ -187,8 +190,10 @@ fn export(
     };
     clock.stop("predict");
 
+    let parts: usize = stage.objects().map(|(_, parts)| parts.len()).sum();
+    let all = parts * stage.scene().steps().len();
     let mut work = Work {
-        progress: progress_bar(&stage, verbosity),
+        progress: progress_bar(all, "photosurfaces", verbosity),
         stage: &stage,
         wanted,
         playback,
@@ -328,20 +333,6 @@ impl Work<'_> {
     }
 }
 
-/// `out.glb` and `_lod0` make `out_lod0.glb`; a stream stays what it is.
-fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
-    if suffix.is_empty() || is_stdout(path) {
-        return path.to_owned();
-    }
-    let mut name = path.file_stem().unwrap_or_default().to_owned();
-    name.push(suffix);
-    if let Some(extension) = path.extension() {
-        name.push(".");
-        name.push(extension);
-    }
-    path.with_file_name(name)
-}
-
 impl OutputArgs {
     fn format(&self) -> anyhow::Result<Format> {
         let Some(path) = &self.output else {
@@ -350,10 +341,7 @@ impl OutputArgs {
         if is_stdout(path) {
             return Ok(Format::Glb);
         }
-        let extension = path
-            .extension()
-            .map(|extension| extension.to_string_lossy().to_ascii_lowercase());
-        match extension.as_deref() {
+        match extension(path).as_deref() {
             Some("glb") => Ok(Format::Glb),
             Some("gltf") => Ok(Format::Gltf),
             Some("ply") => Ok(Format::Ply),
@@ -433,55 +421,18 @@ impl OutputArgs {
         if !self.split {
             return vec![path.to_owned()];
         }
-        let file = |step| {
-            let mut name = path.file_stem().unwrap_or_default().to_owned();
-            name.push(format!("_{}.", step_label(step)));
-            name.push(path.extension().unwrap_or_default());
-            path.with_file_name(name)
-        };
-        (0..steps).map(file).collect()
+        file_for_each(path, steps)
     }
 }
 
-/// Before any work: every file can be written, none is one of those that are read, and no two are one.
-fn check_destinations(levels: &[Level], format: Format, read: &[PathBuf]) -> anyhow::Result<()> {
-    let read: HashSet<_> = read
-        .iter()
-        .filter_map(|file| fs::canonicalize(file).ok())
-        .collect();
-    let outputs = |level: &Level| {
-        let binaries = level.files.iter().filter(|_| format == Format::Gltf);
+/// Every file of every level.
+fn outputs(levels: &[Level], format: Format) -> impl Iterator<Item = PathBuf> {
+    levels.iter().flat_map(move |level| {
+        let binaries = level.files.iter().filter(move |_| format == Format::Gltf);
         let binaries = binaries.map(|file| binary_beside(file));
-        let all = level
-            .files
-            .iter()
-            .cloned()
-            .chain(binaries)
-            .chain(level.report.clone());
-        all.collect::<Vec<_>>()
-    };
-    let mut written: HashMap<PathBuf, PathBuf> = HashMap::new();
-    for file in levels
-        .iter()
-        .flat_map(outputs)
-        .filter(|file| !is_stdout(file))
-    {
-        let place = destination(&file)?;
-        ensure!(
-            !read.contains(&place),
-            "{}: would be written over what is read; choose another name",
-            file.display()
-        );
-        if let Some(other) = written.get(&place) {
-            bail!(
-                "{}: would be written over {}, which is an output too; choose another name",
-                file.display(),
-                other.display()
-            );
-        }
-        written.insert(place, file);
-    }
-    Ok(())
+        let files = level.files.iter().cloned().chain(binaries);
+        files.chain(level.report.clone())
+    })
 }
 
 /// Writes a file of some steps, and does what is left to do when all of it is written and it is about to appear.
@@ -572,11 +523,7 @@ fn summary(files: &[PathBuf], format: Format, made: &Tally) -> String {
             bytes += fs::metadata(binary_beside(file)).map_or(0, |data| data.len());
         }
     }
-    let place = match files {
-        [file] => file.display().to_string(),
-        [first, .., last] => format!("{} to {}", first.display(), last.display()),
-        [] => unreachable!("a scene has at least one step"),
-    };
+    let place = from_first_to_last(files);
     format!(
         "{place}: {}, {}, {}",
         counted(made.photosurfaces, "photosurface"),
@@ -595,22 +542,8 @@ fn describe(facts: &Facts) -> String {
     )
 }
 
-fn progress_bar(stage: &Stage, verbosity: Verbosity) -> ProgressBar {
-    if verbosity.is_quiet() || !stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let parts: usize = stage.objects().map(|(_, parts)| parts.len()).sum();
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} photosurfaces {eta}")
-        .expect("the template is well-formed");
-    ProgressBar::new((parts * stage.scene().steps().len()) as u64).with_style(style)
-}
-
 fn binary_beside(path: &Path) -> PathBuf {
     path.with_extension("bin")
-}
-
-fn is_stdout(path: &Path) -> bool {
-    path == Path::new("-")
 }
 
 /// Wall-clock time of each stage, those of one name added up.

@@ -2,12 +2,17 @@
 
 mod accuracy;
 mod args;
+mod camera;
 mod check;
 mod example;
 mod export;
+mod guides;
 mod input;
 mod messages;
+mod output;
+mod render;
 mod schema;
+mod studio;
 
 use std::process::ExitCode;
 
@@ -48,6 +53,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Export(export::ExportArgs),
+    Render(render::RenderArgs),
     Check(check::CheckArgs),
     Example(example::ExampleArgs),
     Schema(schema::SchemaArgs),
@@ -66,6 +72,7 @@ pub(crate) fn run() -> ExitCode {
     });
     let done = match cli.command {
         Command::Export(args) => export::run(&args),
+        Command::Render(args) => render::run(&args),
         Command::Check(args) => check::run(&args).map(|()| Status::Done),
         Command::Example(args) => example::run(&args).map(|()| Status::Done),
         Command::Schema(args) => schema::run(&args).map(|()| Status::Done),
