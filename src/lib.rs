@@ -21,12 +21,13 @@ mod io;
 mod light_cone;
 mod mesh;
 mod photosurface;
+mod render;
 mod scene;
 mod spacetime;
 mod study;
 mod tessellate;
 
-pub use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4, Vec2, Vec4};
+pub use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4, Vec2, Vec4};
 
 pub use io::{
     AccessorProblem, DocumentProblem, Export, FileFindings, Findings, Format, GltfFile, LoadError,
@@ -42,6 +43,10 @@ pub use mesh::{
 };
 pub use photosurface::{
     Facts, Photosurface, Prediction, SceneFacts, Stage, VertexData, Wanted, step_label,
+};
+pub use render::{
+    Camera, CameraError, MAX_PICTURE_SIDE, Picture, PictureOptions, PictureSize, Projection,
+    RenderError, Scenery, Strokes, Viewpoint, lettering, lettering_width,
 };
 pub use scene::{
     Attribute, Attributes, BUILT_IN_SCENES, BuiltInScene, InvalidScene, Object, Observer, Scene,

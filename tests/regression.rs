@@ -88,28 +88,12 @@ fn a_stdout_that_is_full_is_named() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_export_leaves_no_file_behind() {
-    use std::process::{Command, Stdio};
     for signal in ["INT", "TERM"] {
         let workplace = Workplace::new();
         // Enough work that the signal comes in its midst, in files that are each begun soon.
-        let mut child = Command::new(env!("CARGO_BIN_EXE_photosurface"))
-            .args(["export", "--steps=-6..6/4000", "--split", "-o", "out.glb"])
-            .current_dir(workplace.path(""))
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        while workplace.files().len() < 3 {
-            assert_eq!(
-                child.try_wait().unwrap(),
-                None,
-                "it ended before the signal"
-            );
-            std::thread::yield_now();
-        }
-        let pid = child.id().to_string();
-        let sent = Command::new("kill").args(["-s", signal, &pid]).status();
-        assert!(sent.unwrap().success());
-        assert_eq!(child.wait().unwrap().code(), Some(130), "{signal}");
+        let line = "export --steps=-6..6/4000 --split -o out.glb";
+        let status = workplace.interrupt(line, signal, |files| files.len() >= 3);
+        assert_eq!(status, Some(130), "{signal}");
         let files = workplace.files();
         assert!(files.len() < 4000, "it was done before the signal");
         for file in files {

@@ -1,44 +1,72 @@
-"""Draws the pictures of the README from files that the program writes.
+"""Draws the pictures of the README with the program itself.
 
     python examples/gallery/draw.py target/release/photosurface
 
-needs pyvista and, on a machine without a screen, libegl1 and libgl1. Each picture shows the photosurfaces of one
-built-in scene at all its steps, seen at right angles to the motion, as in Figs. 3 and 4 of Rau, Weiskopf and
-Ruder (1998). The small red sphere is the observer, who flies to the left.
+Each picture is one command, which is printed, of a built-in scene or of one that stands here.
 """
 
-import os
+import json
 import pathlib
+import shlex
 import subprocess
 import sys
-import tempfile
-
-os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-import pyvista  # noqa: E402  (after the environment that it reads)
 
 GALLERY = pathlib.Path(__file__).parent
 
+# A cube that looks turned by asin(0.8) = 53 degrees when it is seen at right angles to its motion: Terrell's rotation.
+ROTATION = {
+    "observer": {"velocity": {"beta": 0.8, "direction": [-1, 0, 0]}},
+    "objects": [
+        {"name": "cube", "shape": {"box": {"size": [2, 2, 2]}}, "color": "#f2f2e6", "checker": "#2471a3",
+         "position": [16, 0, -12]},
+    ],
+}
 
-def draw(binary: str, scene: str) -> None:
-    """Writes gallery/SCENE.png."""
-    with tempfile.TemporaryDirectory() as directory:
-        path = os.path.join(directory, f"{scene}.glb")
-        subprocess.run([binary, "export", "--example", scene, "-q", "-o", path], check=True)
-        plotter = pyvista.Plotter(off_screen=True, window_size=(1200, 280))
-        plotter.import_gltf(path)
-    plotter.set_background("white")
-    plotter.remove_all_lights()
-    plotter.add_light(pyvista.Light(light_type="headlight", intensity=3.0))
-    plotter.enable_parallel_projection()
-    plotter.enable_anti_aliasing("ssaa")
-    bounds = plotter.bounds
-    middle = [(bounds[0] + bounds[1]) / 2, (bounds[2] + bounds[3]) / 2, 0]
-    plotter.camera_position = [(middle[0], middle[1], 60), middle, (0, 1, 0)]
-    width, height = plotter.window_size
-    plotter.camera.parallel_scale = 0.52 * max(bounds[3] - bounds[2], (bounds[1] - bounds[0]) * height / width)
-    plotter.screenshot(GALLERY / f"{scene}.png")
+# Far ahead a sphere is stretched to (1 + beta) gamma = 6.2 times its width, and its outline stays a circle.
+STRETCHED = {
+    "observer": {"velocity": {"beta": 0.95, "direction": [-1, 0, 0]}},
+    "objects": [
+        {"name": "sphere", "shape": {"sphere": {"radius": 1}}, "color": "#f2f2e6", "checker": "#c0392b",
+         "position": [-3, 1.5, 0]},
+    ],
+}
+
+# A plane at right angles to the motion becomes a sheet of a hyperboloid.
+PLANE = {
+    "observer": {"velocity": {"beta": 0.95, "direction": [0, 1, 0]}, "marker": 0.3},
+    "objects": [
+        {"name": "plane", "shape": {"grid": {"size": 16, "cells": 16}}, "color": "#f2f2e6", "checker": "#7d3c98",
+         "position": [0, 1, 0]},
+    ],
+}
+
+GUIDES = "--axes --scale-bar"
+WHITE = "--background #ffffff"
+
+PICTURES = [
+    ("sphere", None, f"--example sphere --view outside --together --size 1200x260 --fov 10 {GUIDES} {WHITE}"),
+    ("cube", None, f"--example cube --view outside --together --size 1200x260 --fov 10 {GUIDES} {WHITE}"),
+    ("figure_3", None, "--example sphere --sheet --size 192x160"),
+    ("figure_4", None, "--example cube --sheet --size 224x180"),
+    ("rotation_seen", ROTATION, "--size 480x360 --fov 13"),
+    ("rotation_shear", ROTATION, f"--view outside --ghost rest --size 480x360 --fov 10 --look 0,-1,-0.25 --scale-bar"),
+    ("stretched_seen", STRETCHED, "--size 480x360 --fov 9"),
+    ("stretched_shape", STRETCHED, f"--view outside --ghost rest --size 480x360 --fov 10 --scale-bar"),
+    ("plane", PLANE, f"--view outside --size 480x360 --fov 20 --look -0.5,-0.35,-1 {GUIDES}"),
+    ("snapshot_seen", None, "--example snapshot --size 480x360 --fov 22"),
+    ("snapshot_shape", None, f"--example snapshot --view outside --ghost rest --size 480x360 --marker 0 --scale-bar"),
+]
+
+
+def draw(binary: str, name: str, scene: dict | None, flags: str) -> None:
+    """Writes gallery/NAME.png."""
+    source = [] if scene is None else ["-"]
+    command = [binary, "render", *source, *shlex.split(flags), "-q", "-o", str(GALLERY / f"{name}.png")]
+    print(shlex.join(command))
+    subprocess.run(command, input=json.dumps(scene), text=True, check=True)
 
 
 if __name__ == "__main__":
-    for name in ("sphere", "cube"):
-        draw(sys.argv[1], name)
+    for picture in PICTURES:
+        if picture[0] in sys.argv[2:] or len(sys.argv) == 2:
+            draw(sys.argv[1], *picture)

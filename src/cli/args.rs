@@ -118,7 +118,7 @@ impl ObserverArgs {
 }
 
 /// `X,Y,Z`
-fn vector(text: &str) -> anyhow::Result<DVec3> {
+pub(super) fn vector(text: &str) -> anyhow::Result<DVec3> {
     let numbers = numbers(text)?;
     let &[x, y, z] = numbers.as_slice() else {
         anyhow::bail!("{} numbers, expected three: X,Y,Z", numbers.len());

@@ -13,9 +13,9 @@ use serde_json::Value;
 
 use super::accuracy::{grouped_number, tolerance};
 use super::args::{InputArgs, ObserverArgs};
-use super::destinations::{check_destinations, is_stdout};
 use super::input::Input;
 use super::messages::{Verbosity, counted, grouped, print, size};
+use super::output::{check_destinations, is_stdout};
 
 /// Show what accuracy costs: triangles, bytes, time and memory for one tolerance after the other
 ///

@@ -2,25 +2,28 @@
 
 use std::ffi::OsStr;
 use std::fs;
-use std::io::{IsTerminal, Write, stderr, stdout};
+use std::io::{IsTerminal, Write, stdout};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, bail, ensure};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use photosurface::{
     Attribute, Export, Facts, Format, GltfFile, Playback, Precision, Report, Scene, Stage,
-    StageTime, Wanted, WriteError, step_label, write_ply, write_whole,
+    StageTime, Wanted, WriteError, write_ply, write_whole,
 };
 use tempfile::{SpooledTempFile, spooled_tempfile, spooled_tempfile_in};
 
 use super::Status;
 use super::accuracy::{AccuracyArgs, Tally};
 use super::args::{InputArgs, ObserverArgs};
-use super::destinations::{check_destinations, is_stdout};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print, size};
+use super::output::{
+    check_destinations, extension, file_for_each, from_first_to_last, is_stdout, progress_bar,
+    with_suffix,
+};
 
 /// Write photosurfaces as meshes
 ///
@@ -186,8 +189,10 @@ fn export(
     };
     clock.stop("predict");
 
+    let parts: usize = stage.objects().map(|(_, parts)| parts.len()).sum();
+    let all = parts * stage.scene().steps().len();
     let mut work = Work {
-        progress: progress_bar(&stage, verbosity),
+        progress: progress_bar(all, "photosurfaces", verbosity),
         stage: &stage,
         wanted,
         playback,
@@ -327,20 +332,6 @@ impl Work<'_> {
     }
 }
 
-/// `out.glb` and `_lod0` make `out_lod0.glb`; a stream stays what it is.
-fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
-    if suffix.is_empty() || is_stdout(path) {
-        return path.to_owned();
-    }
-    let mut name = path.file_stem().unwrap_or_default().to_owned();
-    name.push(suffix);
-    if let Some(extension) = path.extension() {
-        name.push(".");
-        name.push(extension);
-    }
-    path.with_file_name(name)
-}
-
 impl OutputArgs {
     fn format(&self) -> anyhow::Result<Format> {
         let Some(path) = &self.output else {
@@ -349,10 +340,7 @@ impl OutputArgs {
         if is_stdout(path) {
             return Ok(Format::Glb);
         }
-        let extension = path
-            .extension()
-            .map(|extension| extension.to_string_lossy().to_ascii_lowercase());
-        match extension.as_deref() {
+        match extension(path).as_deref() {
             Some("glb") => Ok(Format::Glb),
             Some("gltf") => Ok(Format::Gltf),
             Some("ply") => Ok(Format::Ply),
@@ -432,23 +420,17 @@ impl OutputArgs {
         if !self.split {
             return vec![path.to_owned()];
         }
-        let file = |step| {
-            let mut name = path.file_stem().unwrap_or_default().to_owned();
-            name.push(format!("_{}.", step_label(step)));
-            name.push(path.extension().unwrap_or_default());
-            path.with_file_name(name)
-        };
-        (0..steps).map(file).collect()
+        file_for_each(path, steps)
     }
 }
 
-/// All files of all levels of detail.
+/// Every file of every level.
 fn outputs(levels: &[Level], format: Format) -> impl Iterator<Item = PathBuf> {
     levels.iter().flat_map(move |level| {
         let binaries = level.files.iter().filter(move |_| format == Format::Gltf);
         let binaries = binaries.map(|file| binary_beside(file));
-        let files = level.files.iter().cloned();
-        files.chain(binaries).chain(level.report.clone())
+        let files = level.files.iter().cloned().chain(binaries);
+        files.chain(level.report.clone())
     })
 }
 
@@ -540,11 +522,7 @@ fn summary(files: &[PathBuf], format: Format, made: &Tally) -> String {
             bytes += fs::metadata(binary_beside(file)).map_or(0, |data| data.len());
         }
     }
-    let place = match files {
-        [file] => file.display().to_string(),
-        [first, .., last] => format!("{} to {}", first.display(), last.display()),
-        [] => unreachable!("a scene has at least one step"),
-    };
+    let place = from_first_to_last(files);
     format!(
         "{place}: {}, {}, {}",
         counted(made.photosurfaces, "photosurface"),
@@ -561,16 +539,6 @@ fn describe(facts: &Facts) -> String {
         facts.relative_gamma,
         counted(facts.triangles, "triangle")
     )
-}
-
-fn progress_bar(stage: &Stage, verbosity: Verbosity) -> ProgressBar {
-    if verbosity.is_quiet() || !stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let parts: usize = stage.objects().map(|(_, parts)| parts.len()).sum();
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} photosurfaces {eta}")
-        .expect("the template is well-formed");
-    ProgressBar::new((parts * stage.scene().steps().len()) as u64).with_style(style)
 }
 
 fn binary_beside(path: &Path) -> PathBuf {

@@ -13,6 +13,7 @@ use photosurface::{
 use super::args::{InputArgs, ObserverArgs};
 use super::example::built_in;
 use super::messages::Verbosity;
+use super::output::extension;
 
 /// Beyond its centre, by how many diagonals of a bare mesh's bounds the observer stands off.
 const STAND_OFF: f64 = 2.0;
@@ -70,10 +71,7 @@ impl Input {
         let name = path
             .file_stem()
             .map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
-        let extension = path
-            .extension()
-            .map(|extension| extension.to_string_lossy().to_ascii_lowercase());
-        match extension.as_deref() {
+        match extension(path).as_deref() {
             Some("json") => {
                 let bytes = fs::read(path).with_context(|| place.clone())?;
                 let scene = scene_from_bytes(&bytes).with_context(|| place)?;

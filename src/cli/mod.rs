@@ -2,14 +2,18 @@
 
 mod accuracy;
 mod args;
+mod camera;
 mod check;
 mod cost;
-mod destinations;
 mod example;
 mod export;
+mod guides;
 mod input;
 mod messages;
+mod output;
+mod render;
 mod schema;
+mod studio;
 
 use std::process::ExitCode;
 
@@ -50,6 +54,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Export(export::ExportArgs),
+    Render(render::RenderArgs),
     Check(check::CheckArgs),
     Cost(cost::CostArgs),
     Example(example::ExampleArgs),
@@ -69,6 +74,7 @@ pub(crate) fn run() -> ExitCode {
     });
     let done = match cli.command {
         Command::Export(args) => export::run(&args),
+        Command::Render(args) => render::run(&args),
         Command::Check(args) => check::run(&args).map(|()| Status::Done),
         Command::Cost(args) => cost::run(&args).map(|()| Status::Done),
         Command::Example(args) => example::run(&args).map(|()| Status::Done),

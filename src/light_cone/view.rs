@@ -1,6 +1,6 @@
 //! How an observer in motion sees something else in motion: from two worldlines to the photosurface map.
 
-use glam::DVec3;
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::PhotosurfaceMap;
 use crate::spacetime::{Event, Lorentz, Velocity, WorldLine, length};
@@ -71,6 +71,27 @@ impl View {
         self.place_size
     }
 
+    /// From the rest frame to where things *are* at the moment of observation, in the observer's frame: shortened
+    /// along their motion (Lorentz, FitzGerald), which nobody sees.
+    ///
+    /// # Derivation
+    ///
+    /// A point at the offset `d` from the observer, at whatever time at rest, is at the observer's time 0 where its
+    /// place along the motion is `d_par / gamma`; the rotation follows.
+    pub fn rest_to_now(&self) -> DAffine3 {
+        let velocity = self.relative_velocity();
+        let shortened = velocity.rapidity().cosh().recip() - 1.0;
+        let along = velocity.direction();
+        let column = |axis: DVec3| self.turned(axis + along * (shortened * along.dot(axis)));
+        let matrix = DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z));
+        DAffine3::from_mat3_translation(matrix, -(matrix * self.observer_rest))
+    }
+
+    /// How the observer's axes are turned against those that the boost alone would give (Wigner).
+    pub fn rotation(&self) -> DQuat {
+        self.rest_to_observer.rotation()
+    }
+
     /// Where the point `position_rest` is seen, in the observer's frame.
     pub fn seen_position(&self, position_rest: DVec3) -> DVec3 {
         self.turned(self.map.seen_position(self.offset(position_rest)))
@@ -137,5 +158,37 @@ impl View {
             return DVec3::INFINITY;
         }
         self.rest_to_observer.rotation() * vector
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Through the scene frame: the event at which a point at rest has the observer's time 0 is found by trial.
+    #[test]
+    fn things_are_now_where_two_boosts_put_them() {
+        let velocity = |beta, direction| Velocity::from_beta(beta, direction).expect("below 1");
+        let line = |time, position, velocity| WorldLine {
+            origin: Event::new(time, position),
+            velocity,
+        };
+        let observer = line(0.5, DVec3::new(1.0, 2.0, -3.0), velocity(0.6, DVec3::X));
+        let object = line(0.0, DVec3::Y, velocity(0.8, DVec3::new(1.0, 2.0, -2.0)));
+        let now = View::new(&observer, &object, 0.75).rest_to_now();
+        let to_scene = Lorentz::boost(object.velocity.reversed());
+        let to_observer = Lorentz::boost(observer.velocity);
+        for place in [DVec3::ZERO, DVec3::new(1.0, -2.0, 0.5), DVec3::Z] {
+            let seen = |time: f64| {
+                let scene = object.origin + to_scene.apply(Event::new(time, place));
+                to_observer.apply(scene - observer.at(0.75))
+            };
+            // The observer's time is linear in the time at rest.
+            let (start, slope) = (seen(0.0).time, seen(1.0).time - seen(0.0).time);
+            let event = seen(-start / slope);
+            let found = now.transform_point3(place);
+            assert!(event.time.abs() < 1e-13, "{event:?}");
+            assert!(found.distance(event.position) < 1e-13, "{found} {event:?}");
+        }
     }
 }

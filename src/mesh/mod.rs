@@ -1,5 +1,6 @@
 //! Triangle meshes at rest: geometry, the attributes that travel with it, and what it is made of.
 
+mod edges;
 mod material;
 mod part;
 mod shape;
@@ -7,6 +8,7 @@ mod shape;
 pub use material::{AlphaMode, Image, Material, MaterialError, Texture, Wrap};
 pub(crate) use material::{clamp_factors, extension_names, map_sources, position, retain_textures};
 pub use part::{Model, Part};
+pub(crate) use shape::Band;
 pub use shape::{
     Appearance, Cells, Color, Cone, Count, Cuboid, Cylinder, Grid, Lattice, Length, Rod, Shape,
     ShapeError, Sphere, Torus,

@@ -364,7 +364,7 @@ impl<'a> Plan<'a> {
         let observer = self.view.observer_rest();
         let minimum = mesh.triangles().par_iter().map(|corners| {
             let offsets = corners.map(|corner| mesh.positions()[corner as usize] - observer);
-            minimum_triangles(offsets, limits.whole.between(&offsets)).max(1.0)
+            minimum_triangles(offsets, &limits.whole).max(1.0)
         });
         let bounds = Bounds {
             gap: self.view.relative_velocity().gamma_beta() * gap * (1.0 + 4.0 * f64::EPSILON),

@@ -19,8 +19,8 @@ const TYPICAL_RATIO: f64 = 1.1;
 /// Against a triangle that reaches the observer: halving stops here, where next to nothing is left.
 const MAX_HALVINGS: u32 = 60;
 
-/// The integral of `h / r^2` over a triangle of offsets from the observer, divided by `1.5 sqrt(3) allowed`: the
-/// fewest triangles, for small tolerance, that keep the gap `e` below `allowed`.
+/// The integral of `h / (r^2 allowed)` over a triangle of offsets from the observer, divided by `1.5 sqrt(3)`: the
+/// fewest triangles, for small tolerance, that keep the gap `e` below what is allowed there.
 ///
 /// # Derivation
 ///
@@ -32,7 +32,7 @@ const MAX_HALVINGS: u32 = 60;
 ///
 /// About three digits (quadrature of degree 2 on pieces smaller than half their distance), for triangles of any size.
 /// Zero where a coordinate is not finite: of those nothing is known.
-pub(crate) fn minimum_triangles(offsets: [DVec3; 3], allowed: f64) -> f64 {
+pub(crate) fn minimum_triangles(offsets: [DVec3; 3], allowance: &Allowance) -> f64 {
     let largest = offsets.iter().fold(0.0, |largest: f64, offset| {
         largest.max(offset.abs().max_element())
     });
@@ -49,8 +49,16 @@ pub(crate) fn minimum_triangles(offsets: [DVec3; 3], allowed: f64) -> f64 {
     if height_times_twice_area == 0.0 {
         return 0.0;
     }
-    let integral = 0.5 * height_times_twice_area * mean_inverse_square([a, b, c], 0);
-    times_two_to(integral / AREA_OF_GAP, exponent) / allowed
+    let half = 0.5 * height_times_twice_area / AREA_OF_GAP;
+    match allowance {
+        Allowance::Everywhere(allowed) => {
+            times_two_to(half * mean_inverse_square([a, b, c], 0, &|_| 1.0), exponent) / allowed
+        }
+        Allowance::Angle { .. } => {
+            let inverse = |m: DVec3| 1.0 / allowance.between(&[scaled(m, exponent)]);
+            times_two_to(half * mean_inverse_square([a, b, c], 0, &inverse), exponent)
+        }
+    }
 }
 
 /// About how many triangles one will be divided into.
@@ -65,13 +73,13 @@ pub(crate) fn predicted_pieces(offsets: [DVec3; 3], allowance: &Allowance) -> f6
     let inside = if triangle_gap(a, b, c) <= allowed {
         0.0
     } else {
-        TYPICAL_RATIO * minimum_triangles(offsets, allowed)
+        TYPICAL_RATIO * minimum_triangles(offsets, allowance)
     };
     boundary.iter().sum::<f64>() - 2.0 + inside
 }
 
-/// The mean of `1 / r^2` over a triangle.
-fn mean_inverse_square([a, b, c]: [DVec3; 3], halvings: u32) -> f64 {
+/// The mean of `weight / r^2` over a triangle.
+fn mean_inverse_square([a, b, c]: [DVec3; 3], halvings: u32, weight: &dyn Fn(DVec3) -> f64) -> f64 {
     let edges =
         [(a, b, c), (b, c, a), (c, a, b)].map(|(p, q, r)| ((q - p).length_squared(), p, q, r));
     let longest = edges
@@ -85,14 +93,14 @@ fn mean_inverse_square([a, b, c]: [DVec3; 3], halvings: u32) -> f64 {
         let floor = f64::MIN_POSITIVE.sqrt();
         return middles
             .iter()
-            .map(|m| 1.0 / m.length_squared().max(floor))
+            .map(|m| weight(*m) / m.length_squared().max(floor))
             .sum::<f64>()
             / 3.0;
     }
     let &(_, p, q, r) = longest;
     let m = (p + q) * 0.5;
-    0.5 * (mean_inverse_square([p, m, r], halvings + 1)
-        + mean_inverse_square([m, q, r], halvings + 1))
+    0.5 * (mean_inverse_square([p, m, r], halvings + 1, weight)
+        + mean_inverse_square([m, q, r], halvings + 1, weight))
 }
 
 #[cfg(test)]
@@ -118,7 +126,7 @@ mod tests {
                 [corner(-1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
             ];
             let found: f64 = triangles
-                .map(|t| minimum_triangles(t, 1.0 / AREA_OF_GAP))
+                .map(|t| minimum_triangles(t, &Allowance::Everywhere(1.0 / AREA_OF_GAP)))
                 .iter()
                 .sum();
             assert!(
@@ -136,20 +144,32 @@ mod tests {
             DVec3::new(0.9, -0.5, 0.25),
             DVec3::new(0.0, 0.9, 0.5),
         ];
-        let expected = minimum_triangles(corners, 1e-3);
+        let expected = minimum_triangles(corners, &Allowance::Everywhere(1e-3));
         for exponent in [-1000, -600, -200, 200, 600, 1023] {
             let scale = 2f64.powi(exponent);
-            let found = minimum_triangles(corners.map(|corner| corner * scale), 1e-3 * scale);
+            let found = minimum_triangles(
+                corners.map(|corner| corner * scale),
+                &Allowance::Everywhere(1e-3 * scale),
+            );
             assert_eq!(found, expected, "2^{exponent}");
         }
         let far = corners.map(|corner| corner * f64::MAX);
-        assert_eq!(minimum_triangles(far, 1e-3), f64::INFINITY);
         assert_eq!(
-            minimum_triangles([DVec3::X, DVec3::Y, DVec3::INFINITY], 1e-3),
+            minimum_triangles(far, &Allowance::Everywhere(1e-3)),
+            f64::INFINITY
+        );
+        assert_eq!(
+            minimum_triangles(
+                [DVec3::X, DVec3::Y, DVec3::INFINITY],
+                &Allowance::Everywhere(1e-3)
+            ),
             0.0
         );
         assert_eq!(
-            minimum_triangles([DVec3::X, DVec3::Y, DVec3::NAN], 1e-3),
+            minimum_triangles(
+                [DVec3::X, DVec3::Y, DVec3::NAN],
+                &Allowance::Everywhere(1e-3)
+            ),
             0.0
         );
     }
@@ -157,8 +177,11 @@ mod tests {
     #[test]
     fn planes_through_the_observer_need_no_division() {
         let flat = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        assert_eq!(minimum_triangles(flat, 1e-3), 0.0);
+        assert_eq!(minimum_triangles(flat, &Allowance::Everywhere(1e-3)), 0.0);
         let degenerate = [DVec3::X, DVec3::X + DVec3::Y, DVec3::X - DVec3::Y];
-        assert_eq!(minimum_triangles(degenerate, 1e-3), 0.0);
+        assert_eq!(
+            minimum_triangles(degenerate, &Allowance::Everywhere(1e-3)),
+            0.0
+        );
     }
 }

@@ -230,7 +230,7 @@ fn outcome(
             points.push(at(weights, point_between(p, q, parameter), 1 << number));
         }
     }
-    let minimum = minimum_triangles([a, b, c], allowed);
+    let minimum = minimum_triangles([a, b, c], allowance);
     let most_points = MOST_POINTS * (minimum + points.len() as f64) + 64.0;
     let most_points = most_points.min(MAX_POINTS) as usize;
     let pieces = divide(corner_positions, observer, &points, allowance, most_points);

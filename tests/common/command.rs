@@ -75,6 +75,31 @@ impl Workplace {
         self.finish(command, format!("photosurface {arguments}"), stdin)
     }
 
+    /// Starts `photosurface` with these arguments and sends it a signal as soon as `is_time`, told the names of all
+    /// files, says so; its exit status.
+    pub(crate) fn interrupt(
+        &self,
+        arguments: &str,
+        signal: &str,
+        is_time: impl Fn(&[String]) -> bool,
+    ) -> Option<i32> {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_photosurface"))
+            .args(arguments.split_whitespace())
+            .current_dir(self.directory.path())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the program starts");
+        while !is_time(&self.files()) {
+            let status = child.try_wait().expect("it can be asked");
+            assert_eq!(status, None, "it ended before the signal");
+            std::thread::yield_now();
+        }
+        let pid = child.id().to_string();
+        let sent = Command::new("kill").args(["-s", signal, &pid]).status();
+        assert!(sent.expect("kill is there").success());
+        child.wait().expect("the program ends").code()
+    }
+
     /// Runs a line of shell in which `photosurface` is the binary.
     pub(crate) fn run_shell(&self, line: &str) -> Run {
         let binary = Path::new(env!("CARGO_BIN_EXE_photosurface"));

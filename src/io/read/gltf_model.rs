@@ -118,6 +118,8 @@ fn extras(root: &Root, node: usize) -> Option<Arc<Value>> {
     let both = [("node", of_node), ("mesh", of_mesh)].into_iter();
     let both: Map<_, _> = both
         .filter_map(|(name, extras)| Some((name.to_owned(), extras?)))
+        // Some programs write what says nothing.
+        .filter(|(_, extras)| *extras != serde_json::json!({}))
         .collect();
     (!both.is_empty()).then(|| Arc::new(Value::Object(both)))
 }

@@ -74,6 +74,12 @@ impl Texture {
         })
     }
 
+    /// Whether it shows its pixels where it is seen from near by, instead of mixing them.
+    pub(crate) fn is_magnified_by_nearest(&self) -> bool {
+        let filter = self.sampler.as_ref().and_then(|s| s.get("magFilter"));
+        filter.and_then(Value::as_u64) == Some(9728)
+    }
+
     /// Adds the names of the extensions that it uses, its sampler and images.
     pub(super) fn add_extensions(&self, names: &mut BTreeSet<String>) {
         add_extension_names(&self.properties, names);

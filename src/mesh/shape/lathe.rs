@@ -25,6 +25,17 @@ pub(super) enum Chart {
     Across { radius: f64, repeats: f64 },
 }
 
+impl Chart {
+    /// Where a point of a disc that faces up or down, as its normal says, is on a flat picture.
+    pub(super) fn across(&self, position: DVec3, up: f64) -> DVec2 {
+        let Self::Across { radius, repeats } = self else {
+            return DVec2::ZERO;
+        };
+        let across = DVec2::new(position.x, position.z * up) / (2.0 * radius);
+        *repeats * (across + 0.5)
+    }
+}
+
 /// A circle of vertices about the axis, or with radius zero the point where the axis pierces it.
 pub(super) struct Ring {
     pub(super) radius: f64,
@@ -137,10 +148,7 @@ fn add_vertex(surface: &mut Surface, chart: &Chart, ring: &Ring, part: u64, part
     let normal = ring.normal.x * direction + ring.normal.y * DVec3::Y;
     let texture = match chart {
         Chart::Around { repeats } => DVec2::new(repeats * (part as f64 / parts as f64), ring.down),
-        Chart::Across { radius, repeats } => {
-            let across = DVec2::new(position.x, position.z * ring.normal.y) / (2.0 * radius);
-            *repeats * (across + 0.5)
-        }
+        flat @ Chart::Across { .. } => flat.across(position, ring.normal.y),
     };
     surface.vertex(position, normal, texture)
 }

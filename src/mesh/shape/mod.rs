@@ -5,6 +5,7 @@
 //! corners is mapped by a nonlinear map, and a long edge would stay straight where the surface bends.
 
 mod appearance;
+mod band;
 mod checker;
 mod deviation;
 mod error;
@@ -19,6 +20,7 @@ mod surface;
 mod witness;
 
 pub use appearance::{Appearance, Color};
+pub(crate) use band::Band;
 pub use error::ShapeError;
 pub use flat::{Cuboid, Grid};
 pub use lattice::Lattice;

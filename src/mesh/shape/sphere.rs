@@ -43,6 +43,11 @@ impl Sphere {
         Ok(sphere.surface)
     }
 
+    /// The texture coordinates of the sphere's point in `direction`, of any length.
+    pub(crate) fn texture_at(&self, direction: DVec3) -> DVec2 {
+        DVec2::new(turn(direction), from_north(direction))
+    }
+
     pub(super) fn triangle_count(&self) -> u64 {
         20 * u64::from(self.splits()).pow(2)
     }
@@ -105,8 +110,7 @@ impl Builder {
     fn vertex(&mut self, normal: DVec3, turn: f64) -> u32 {
         let key = (normal.to_array().map(f64::to_bits), turn.to_bits());
         *self.known.entry(key).or_insert_with(|| {
-            let from_north = normal.x.hypot(normal.z).atan2(normal.y) / PI;
-            let texture = DVec2::new(turn, from_north);
+            let texture = DVec2::new(turn, from_north(normal));
             self.surface.vertex(self.radius * normal, normal, texture)
         })
     }
@@ -126,8 +130,13 @@ fn unwrapped_turns(normals: [DVec3; 3]) -> [f64; 3] {
     turns
 }
 
+/// The part of half a turn that a direction is away from north.
+fn from_north(direction: DVec3) -> f64 {
+    direction.x.hypot(direction.z).atan2(direction.y) / PI
+}
+
 /// The part of a turn that [`direction_of_turn`] needs for this direction.
-fn turn(direction: DVec3) -> f64 {
+pub(super) fn turn(direction: DVec3) -> f64 {
     let turn = (-direction.x).atan2(-direction.z) / TAU;
     if turn < 0.0 { turn + 1.0 } else { turn }
 }

@@ -1,0 +1,306 @@
+//! Flags that say what a picture shows and from where, and cameras that frame everything.
+
+use std::f64::consts::PI;
+
+use anyhow::{Context, bail, ensure};
+use photosurface::{Camera, Color, DVec3, PictureSize, Projection, Stage, Wanted};
+
+use super::args::vector;
+
+/// From where everything is looked at if nothing else is said: from in front, a little from above and the right.
+const FROM: DVec3 = DVec3::new(0.3, 0.3, 1.0);
+
+/// Room around what is framed.
+const FRAME: f64 = 1.08;
+
+/// Between this many directions there are about 20 degrees: what is round sticks out by less than 2 % of its radius
+/// between two places that are farthest out.
+const DIRECTIONS: usize = 128;
+
+/// A camera that frames something by itself is at least so narrow and at most so wide, in degrees.
+const FIELD: std::ops::RangeInclusive<f64> = 1.0..=100.0;
+
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Camera (places and directions are in the observer's frame)")]
+pub(super) struct CameraArgs {
+    /// What the observer sees, or photosurfaces from any other place
+    #[arg(long, value_enum, default_value_t = View::Observer)]
+    pub(super) view: View,
+    /// How the observer's view is made; from outside there are photosurfaces only
+    /// [default: rays for the observer, mesh from outside]
+    #[arg(long, value_enum)]
+    method: Option<Method>,
+    /// Width and height of the picture in pixels, of each one on a sheet [default: 1280x720, on a sheet 320x240]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<PictureSize>,
+    /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180 [default: 60, from outside
+    /// 30, the observer's on a sheet so that everything is in the picture]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    fov: Option<f64>,
+    /// Show the whole sky in longitude and latitude instead
+    #[arg(long, conflicts_with = "fov")]
+    full_sky: bool,
+    /// Direction in which the camera looks, of any length [default: to the middle of what is there]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, conflicts_with = "target")]
+    look: Option<DVec3>,
+    /// Place at which the camera looks, in scene units
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    target: Option<DVec3>,
+    /// Place of an outside camera, in scene units; the observer is at 0,0,0 [default: so that all of every step
+    /// is in the picture]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    from: Option<DVec3>,
+    /// Show all steps on one sheet: what the observer sees above, the photosurface from outside below, at one scale
+    #[arg(long, conflicts_with_all = ["view", "look", "target", "full_sky"])]
+    pub(super) sheet: bool,
+    /// Show the photosurfaces of all steps in one picture (--view outside)
+    #[arg(long, conflicts_with = "sheet")]
+    pub(super) together: bool,
+    /// Rays a pixel along each side: N for N x N of them, from 1 to 16; they smooth edges and textures
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=16))]
+    pub(super) samples: u32,
+    /// Colour where nothing is seen, #rrggbb
+    #[arg(long, value_name = "COLOR", value_parser = color, default_value = "#14171c")]
+    pub(super) background: Color,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum View {
+    /// From the observer's place, with the light that arrives there
+    Observer,
+    /// From any other place
+    Outside,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Method {
+    /// Follow light back to where it came from
+    Rays,
+    /// Look at the photosurfaces
+    Mesh,
+}
+
+/// A camera somewhere outside.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outside {
+    pub(super) camera: Camera,
+    pub(super) place: DVec3,
+    /// How high the picture is in the middle of what it shows, in scene units.
+    pub(super) height: f64,
+}
+
+impl CameraArgs {
+    /// How the observer's view is made, if there is one.
+    pub(super) fn method(&self) -> anyhow::Result<Method> {
+        let outside = self.view == View::Outside;
+        ensure!(
+            outside || !self.together,
+            "--together is for --view outside"
+        );
+        match self.method {
+            Some(Method::Rays) if outside => bail!(
+                "--method rays is what the observer sees; from outside there are photosurfaces only (--method mesh)"
+            ),
+            _ if !outside && !self.sheet && self.from.is_some() => {
+                bail!("--from is for --view outside; the observer is at 0,0,0")
+            }
+            Some(method) => Ok(method),
+            None if outside => Ok(Method::Mesh),
+            None => Ok(Method::Rays),
+        }
+    }
+
+    /// Whether there are photosurfaces in the pictures.
+    pub(super) fn shows_meshes(&self, method: Method) -> bool {
+        self.sheet || method == Method::Mesh
+    }
+
+    /// Of one picture.
+    pub(super) fn size(&self) -> PictureSize {
+        let [width, height] = if self.sheet { [320, 240] } else { [1280, 720] };
+        self.size.unwrap_or_else(|| {
+            PictureSize::new(width, height).expect("both sides are within the limits")
+        })
+    }
+
+    fn camera(&self, fov: f64, look: DVec3) -> anyhow::Result<Camera> {
+        let projection = match self.full_sky {
+            true => Projection::FullSky,
+            false => Projection::Pinhole {
+                vertical_fov_deg: fov,
+            },
+        };
+        Ok(Camera::new(self.size(), projection, look)?)
+    }
+
+    fn aspect(&self) -> f64 {
+        f64::from(self.size().width()) / f64::from(self.size().height())
+    }
+
+    /// The field of view of the observer at all steps, in degrees; `places` are those of each step.
+    pub(super) fn observer_fov(&self, places: impl Iterator<Item = Vec<DVec3>>) -> f64 {
+        match self.fov {
+            Some(fov) => fov,
+            None if self.sheet => {
+                let widest = places.map(|places| {
+                    let middle = middle_of_sky(&places);
+                    let angles = places.iter().map(|place| place.angle_between(middle));
+                    angles.fold(0.0, f64::max)
+                });
+                let half = widest.fold(0.0, f64::max) * FRAME;
+                // The narrower side of the picture holds it.
+                let tan = half.min(1.5).tan() / self.aspect().min(1.0);
+                (2.0 * tan.atan().to_degrees()).clamp(*FIELD.start(), *FIELD.end())
+            }
+            None => 60.0,
+        }
+    }
+
+    /// The camera of the observer, who sees something at `places`.
+    pub(super) fn at_observer(&self, fov: f64, places: &[DVec3]) -> anyhow::Result<Camera> {
+        let look = self.look.or(self.target);
+        self.camera(fov, look.unwrap_or_else(|| middle_of_sky(places)))
+    }
+
+    /// A camera outside that frames places, several lists of them one after another from one distance.
+    pub(super) fn outside(&self, places: &[Vec<DVec3>]) -> anyhow::Result<Vec<Outside>> {
+        let fov = self.fov.unwrap_or(30.0);
+        let half = (fov.clamp(*FIELD.start(), 179.0).to_radians() / 2.0).tan();
+        let away = match self.look {
+            Some(look) => -look.normalize_or_zero(),
+            None => FROM.normalize(),
+        };
+        // A camera of no direction or field of view is an error in a moment.
+        let right = away.cross(DVec3::NEG_Y).try_normalize().unwrap_or(DVec3::X);
+        let up = away.cross(right);
+        let frames = places.iter().map(|places| {
+            let local =
+                |place: &DVec3| DVec3::new(place.dot(right), place.dot(up), place.dot(away));
+            let (low, high) = bounds(places.iter().map(local));
+            let middle = (low + high) / 2.0;
+            let target = right * middle.x + up * middle.y + away * middle.z;
+            let target = self.target.unwrap_or(target);
+            let distances = places.iter().map(|place| {
+                let from_target = local(&(*place - target));
+                let across = (from_target.x.abs() / self.aspect()).max(from_target.y.abs());
+                from_target.z + FRAME * across / half
+            });
+            (target, distances.fold(0.0, f64::max))
+        });
+        let frames: Vec<_> = frames.collect();
+        let distance = frames.iter().map(|frame| frame.1).fold(0.0, f64::max);
+        let outside = |(target, _): (DVec3, f64)| {
+            let place = self.from.unwrap_or(target + away * distance);
+            let camera = self.camera(fov, self.look.unwrap_or(target - place))?;
+            let distance = match self.from {
+                Some(from) => from.distance(target),
+                None => distance,
+            };
+            Ok(Outside {
+                camera,
+                place,
+                height: 2.0 * half * distance,
+            })
+        };
+        frames.into_iter().map(outside).collect()
+    }
+}
+
+/// The middle of the sky that is taken up, not of space: an observer may be in the midst of things.
+fn middle_of_sky(places: &[DVec3]) -> DVec3 {
+    let directions: Vec<_> = places
+        .iter()
+        .filter_map(|place| place.try_normalize())
+        .collect();
+    // Not the mean of the vertices, of which there may be more on one side.
+    let (low, high) = bounds(directions.into_iter());
+    (low + high).try_normalize().unwrap_or(DVec3::NEG_Z)
+}
+
+fn bounds(places: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
+    places.fold(
+        (DVec3::INFINITY, DVec3::NEG_INFINITY),
+        |(low, high), place| (low.min(place), high.max(place)),
+    )
+}
+
+/// Where things are seen at one step, as far as their given vertices say.
+pub(super) fn rough_places(stage: &Stage, step: usize) -> Vec<DVec3> {
+    let wanted = Wanted {
+        subdivide: false,
+        ..Wanted::default()
+    };
+    stage
+        .photosurfaces(step, wanted)
+        .flat_map(|surface| surface.mesh.positions().to_vec())
+        .collect()
+}
+
+/// Those of many places that are farthest out, one for each of [`DIRECTIONS`] directions: what a frame needs of them.
+pub(super) fn outermost(places: Vec<DVec3>) -> Vec<DVec3> {
+    if places.len() <= DIRECTIONS {
+        return places;
+    }
+    let directions = (0..DIRECTIONS).map(|index| {
+        // Evenly over the sphere, along a spiral of the golden angle.
+        let height = (2.0 * index as f64 + 1.0) / DIRECTIONS as f64 - 1.0;
+        let (sin, cos) = (index as f64 * PI * (3.0 - 5f64.sqrt())).sin_cos();
+        let across = (1.0 - height * height).sqrt();
+        DVec3::new(across * cos, height, across * sin)
+    });
+    let farthest = |direction: DVec3| {
+        let by_distance = |a: &&DVec3, b: &&DVec3| a.dot(direction).total_cmp(&b.dot(direction));
+        places.iter().max_by(by_distance).copied()
+    };
+    directions.filter_map(farthest).collect()
+}
+
+/// `WxH`
+fn size(text: &str) -> anyhow::Result<PictureSize> {
+    let (width, height) = text
+        .split_once(['x', 'X'])
+        .context("expected WxH like 1280x720")?;
+    let number = |text: &str| {
+        let text = text.trim();
+        text.parse()
+            .with_context(|| format!("\"{text}\" is no number of pixels, expected a whole number"))
+    };
+    Ok(PictureSize::new(number(width)?, number(height)?)?)
+}
+
+/// `#rrggbb`
+fn color(text: &str) -> anyhow::Result<Color> {
+    Ok(Color::try_from(text.to_owned())?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_outermost_stands_for_all() {
+        let angles = (0..5000).map(|k| f64::from(k) * 2.399_963);
+        let ball: Vec<_> = angles
+            .map(|angle| DVec3::new(angle.cos(), (0.01 * angle).sin(), angle.sin()).normalize())
+            .collect();
+        let outer = outermost(ball.clone());
+        assert!(outer.len() <= DIRECTIONS && outer.iter().all(|place| ball.contains(place)));
+        for direction in [DVec3::X, DVec3::Y, DVec3::ONE.normalize()] {
+            let farthest = outer.iter().map(|place| place.dot(direction));
+            assert!(farthest.fold(0.0, f64::max) > 0.98);
+        }
+        let few = vec![DVec3::ZERO; 3];
+        assert_eq!(outermost(few.clone()), few);
+    }
+
+    #[test]
+    fn sizes_and_colours_are_read() {
+        let read = size("640x480").unwrap();
+        assert_eq!((read.width(), read.height()), (640, 480));
+        for wrong in ["", "640", "0x480", "640x-1", "640x99999", "axb"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(color("#ff0080").unwrap(), Color([255, 0, 128]));
+        assert!(color("red").is_err());
+    }
+}

@@ -1,0 +1,92 @@
+//! Where results go: names of files, what must not be written over, how far the work has got.
+
+use std::collections::{HashMap, HashSet};
+use std::fs;
+use std::io::{IsTerminal, stderr};
+use std::path::{Path, PathBuf};
+
+use anyhow::{bail, ensure};
+use indicatif::{ProgressBar, ProgressStyle};
+use photosurface::{destination, step_label};
+
+use super::messages::Verbosity;
+
+/// Whether a name means stdout.
+pub(super) fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// The extension of a name, in lower case.
+pub(super) fn extension(path: &Path) -> Option<String> {
+    path.extension()
+        .map(|extension| extension.to_string_lossy().to_ascii_lowercase())
+}
+
+/// `out.glb` and `_lod0` make `out_lod0.glb`; a stream stays what it is.
+pub(super) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
+    if suffix.is_empty() || is_stdout(path) {
+        return path.to_owned();
+    }
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(suffix);
+    if let Some(extension) = path.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    path.with_file_name(name)
+}
+
+/// A file for each step: `out_step000.glb`, `out_step001.glb`, ...
+pub(super) fn file_for_each(path: &Path, steps: usize) -> Vec<PathBuf> {
+    let file = |step| with_suffix(path, &format!("_{}", step_label(step)));
+    (0..steps).map(file).collect()
+}
+
+/// Several files in a few words.
+pub(super) fn from_first_to_last(files: &[PathBuf]) -> String {
+    match files {
+        [file] => file.display().to_string(),
+        [first, .., last] => format!("{} to {}", first.display(), last.display()),
+        [] => unreachable!("a scene has at least one step"),
+    }
+}
+
+/// Before any work: every file can be written, none is one of those that are `read`, and no two are one.
+pub(super) fn check_destinations(
+    written: impl IntoIterator<Item = PathBuf>,
+    read: &[PathBuf],
+) -> anyhow::Result<()> {
+    let read: HashSet<_> = read
+        .iter()
+        .filter_map(|file| fs::canonicalize(file).ok())
+        .collect();
+    let mut places: HashMap<PathBuf, PathBuf> = HashMap::new();
+    for file in written.into_iter().filter(|file| !is_stdout(file)) {
+        let place = destination(&file)?;
+        ensure!(
+            !read.contains(&place),
+            "{}: would be written over what is read; choose another name",
+            file.display()
+        );
+        if let Some(other) = places.get(&place) {
+            bail!(
+                "{}: would be written over {}, which is an output too; choose another name",
+                file.display(),
+                other.display()
+            );
+        }
+        places.insert(place, file);
+    }
+    Ok(())
+}
+
+/// A bar of so many things, on a terminal.
+pub(super) fn progress_bar(length: usize, things: &str, verbosity: Verbosity) -> ProgressBar {
+    if verbosity.is_quiet() || !stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style =
+        ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {things} {{eta}}"))
+            .expect("the template is well-formed");
+    ProgressBar::new(length as u64).with_style(style)
+}

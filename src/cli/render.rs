@@ -1,0 +1,148 @@
+//! `photosurface render`: pictures of what the observer sees, and of photosurfaces from anywhere.
+
+use std::io::{IsTerminal, stdout};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, ensure};
+use photosurface::{Picture, Precision, Stage, write_whole};
+
+use super::Status;
+use super::accuracy::AccuracyArgs;
+use super::args::{InputArgs, ObserverArgs};
+use super::camera::{CameraArgs, View};
+use super::guides::GuideArgs;
+use super::input::Input;
+use super::messages::{Verbosity, counted, print};
+use super::output::{
+    check_destinations, extension, file_for_each, from_first_to_last, is_stdout, progress_bar,
+};
+use super::studio::Studio;
+
+/// Make pictures of what the observer sees, or of photosurfaces from outside
+///
+/// The observer's view is made by following rays of light back into the rest frame of each object, exact at every
+/// pixel, or with --method mesh by looking at the photosurfaces that export would write.
+/// Without SCENE or MESH the built-in scene "sphere" is taken:
+///
+///     photosurface render
+///     photosurface render --sheet --example cube -o cube.png
+///     photosurface render --example street --look 0,0,-1 -o street.png
+///     photosurface render --example cube --view outside --ghost rest,contracted --axes -o outside.png
+#[derive(Debug, clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(super) struct RenderArgs {
+    #[command(flatten)]
+    input: InputArgs,
+    #[command(flatten)]
+    observer: ObserverArgs,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    guides: GuideArgs,
+    #[command(flatten)]
+    accuracy: AccuracyArgs,
+    /// Where to write a .png; of several steps each has a file: out_step000.png, out_step001.png, ...; - for
+    /// stdout [default: NAME_VIEW.png or NAME_sheet.png in this directory]
+    #[arg(short, long, value_name = "FILE", help_heading = "Output")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    verbosity: Verbosity,
+}
+
+pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
+    let (camera, guides, verbosity) = (&args.camera, &args.guides, args.verbosity);
+    let method = camera.method()?;
+    ensure!(
+        camera.sheet || camera.view == View::Outside || !guides.are_for_outside(),
+        "--ghost, --axes and --scale-bar are for --view outside and --sheet"
+    );
+    ensure!(
+        camera.shows_meshes(method) || !guides.wireframe,
+        "--wireframe shows triangles, which rays do not have; add --method mesh or --view outside"
+    );
+    check_output(args.output.as_deref())?;
+    ensure!(
+        args.accuracy.level_count() == 1,
+        "--lod is for several meshes; render takes one --tolerance"
+    );
+    let input = Input::read(&args.input, &args.observer, verbosity)?;
+    let kind = match (camera.sheet, camera.view) {
+        (true, _) => "sheet",
+        (_, View::Observer) => "observer",
+        (_, View::Outside) => "outside",
+    };
+    let path = match &args.output {
+        Some(path) => path.clone(),
+        None => PathBuf::from(format!("{}_{kind}.png", input.name)),
+    };
+    let steps = input.scene.steps().len();
+    if camera.sheet {
+        Studio::sheet_size(camera, steps)?;
+    }
+    let files = match steps {
+        1 => vec![path],
+        _ if camera.sheet || camera.together => vec![path],
+        _ => file_for_each(&path, steps),
+    };
+    ensure!(
+        files.len() == 1 || !is_stdout(&files[0]),
+        "{steps} steps are as many pictures, they cannot all go to stdout; choose one with --steps"
+    );
+    check_destinations(files.iter().cloned(), &input.files)?;
+    let mut levels = args.accuracy.levels(input.scene)?;
+    let (_, scene) = levels.pop().expect("one level was made sure of");
+    let mut stage = Stage::new(scene, input.models);
+    let wanted = args.accuracy.wanted(Precision::Double);
+    if camera.shows_meshes(method) && wanted.subdivide {
+        stage = args.accuracy.within_budget(stage, wanted, verbosity).0;
+    }
+    let progress = progress_bar(Studio::rows(camera, steps), "rows", verbosity);
+    let mut studio = Studio::new(
+        &stage,
+        (camera, guides),
+        method,
+        wanted,
+        verbosity,
+        progress.clone(),
+    )?;
+    studio.take_all(|number, picture| write(&files[number], picture))?;
+    progress.finish_and_clear();
+    if !is_stdout(&files[0]) {
+        verbosity.result(format_args!(
+            "{}: {}",
+            from_first_to_last(&files),
+            counted(files.len(), "picture")
+        ));
+    }
+    Ok(match args.accuracy.is_kept(&studio.tally, verbosity) {
+        true => Status::Done,
+        false => Status::NotCertified,
+    })
+}
+
+fn check_output(output: Option<&Path>) -> anyhow::Result<()> {
+    let Some(path) = output else {
+        return Ok(());
+    };
+    if is_stdout(path) {
+        ensure!(
+            !stdout().is_terminal(),
+            "a PNG is no text for a terminal; send stdout to a file or a pipe"
+        );
+        return Ok(());
+    }
+    ensure!(
+        extension(path).as_deref() == Some("png"),
+        "{}: unknown extension, expected .png",
+        path.display()
+    );
+    Ok(())
+}
+
+fn write(path: &Path, picture: &Picture) -> anyhow::Result<()> {
+    if is_stdout(path) {
+        return print(|out| Ok(picture.write_png(out)?));
+    }
+    write_whole(path, |writer| Ok(picture.write_png(writer)?))
+        .with_context(|| path.display().to_string())
+}

@@ -1,0 +1,123 @@
+//! Which colour is seen in a direction.
+
+use glam::{DVec2, DVec3, Vec3};
+
+use super::Camera;
+use super::body::{AMBIENT, Meeting, Sitter};
+
+/// Most surfaces one ray of light is followed through.
+const MOST_LAYERS: usize = 64;
+
+/// A ray goes on behind a surface by this part of the way to it, so that it does not meet it again.
+const STEP_BEHIND: f64 = 1.0 + 1e-12;
+
+/// What is too faint to see: half a step of 8 bits, squared.
+const OPAQUE: f32 = 1.0 / (510.0 * 510.0);
+
+/// How opaque a ghost is where it is seen head-on, and how much more at its rim.
+const GHOST: [f32; 2] = [0.1, 0.6];
+
+/// How much of a ghost is seen through what is in front of it.
+const GHOST_BEHIND: f32 = 0.8;
+
+/// How opaque the edges of triangles are.
+const WIRE: f32 = 0.7;
+
+/// Half the width of the edges of triangles, in pixels.
+const HALF_WIRE: f64 = 0.6;
+
+/// All that decides on the colour of a direction.
+pub(super) struct Look<'a> {
+    pub(super) eye: DVec3,
+    pub(super) sitters: Vec<Sitter<'a>>,
+    pub(super) ghosts: Vec<Sitter<'a>>,
+    pub(super) ghost_colors: Vec<Vec3>,
+    pub(super) background: Vec3,
+    /// The colour of wires, and how they come to be on the picture.
+    pub(super) wires: Option<(Vec3, &'a Camera)>,
+}
+
+impl Look<'_> {
+    /// The linear colour that is seen at a place of the picture, in the direction `seen`.
+    pub(super) fn light(&self, place: DVec2, seen: DVec3) -> Vec3 {
+        let (mut light, distance) = self.solid_light(place, seen);
+        for (ghost, color) in self.ghosts.iter().zip(&self.ghost_colors) {
+            if let Some(meeting) = ghost.meeting(self.eye, seen, 0.0, f64::MAX, false) {
+                let grazing = (1.0 - meeting.brightness) / (1.0 - AMBIENT);
+                let opacity = GHOST[0] + GHOST[1] * grazing * grazing;
+                let behind = meeting.distance > distance;
+                let veiled = if behind { GHOST_BEHIND } else { 1.0 };
+                light = light.lerp(*color, opacity * veiled);
+            }
+        }
+        light
+    }
+
+    /// Without ghosts, and how far away the first surface is.
+    fn solid_light(&self, place: DVec2, seen: DVec3) -> (Vec3, f64) {
+        let mut light = Vec3::ZERO;
+        let mut clearness = 1.0;
+        let mut beyond = 0.0;
+        let mut first = f64::MAX;
+        for _ in 0..MOST_LAYERS {
+            let nearest = nearest(
+                &self.sitters,
+                self.eye,
+                seen,
+                beyond,
+                f64::MAX,
+                self.wires.is_some(),
+            );
+            let Some(meeting) = nearest else {
+                return (light + self.background * clearness, first);
+            };
+            let Meeting { paint, texture, .. } = meeting;
+            let (mut color, mut opacity) = paint.color_at(texture, meeting.vertex_color);
+            if let (Some((wire, camera)), Some(triangle)) = (self.wires, meeting.triangle)
+                && is_on_edge(camera, triangle.map(|corner| corner - self.eye), place)
+            {
+                // Not opaque: where triangles are smaller than pixels all would be wire.
+                (color, opacity) = (color.lerp(wire, WIRE), opacity.max(WIRE));
+            }
+            if opacity > 0.0 {
+                first = first.min(meeting.distance);
+            }
+            light += color * (meeting.brightness * opacity * clearness);
+            clearness *= 1.0 - opacity;
+            if clearness < OPAQUE {
+                break;
+            }
+            beyond = meeting.distance * STEP_BEHIND;
+        }
+        (light, first)
+    }
+}
+
+/// The first thing that a ray meets, farther than `beyond` and not as far as `limit`.
+pub(super) fn nearest<'a>(
+    sitters: &[Sitter<'a>],
+    eye: DVec3,
+    seen: DVec3,
+    beyond: f64,
+    limit: f64,
+    wires: bool,
+) -> Option<Meeting<'a>> {
+    sitters
+        .iter()
+        .fold(None, |nearest: Option<Meeting>, sitter| {
+            let limit = nearest.as_ref().map_or(limit, |nearest| nearest.distance);
+            sitter.meeting(eye, seen, beyond, limit, wires).or(nearest)
+        })
+}
+
+/// Whether a place of the picture is on an edge of a triangle, given by its corners from the eye.
+fn is_on_edge(camera: &Camera, corners: [DVec3; 3], place: DVec2) -> bool {
+    let [Some(a), Some(b), Some(c)] = corners.map(|corner| camera.place(corner)) else {
+        return false;
+    };
+    [[a, b], [b, c], [c, a]].into_iter().any(|[start, end]| {
+        let along = end - start;
+        let part = (place - start).dot(along) / along.length_squared();
+        place.distance(start.lerp(end, part.clamp(0.0, 1.0))) < HALF_WIRE
+    })
+}

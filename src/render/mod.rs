@@ -1,0 +1,27 @@
+//! Pictures: what the observer sees, by tracing light back, and surfaces seen from anywhere.
+//!
+//! An independent witness of the photosurface: nothing here maps a vertex. A ray of light that reaches the
+//! observer is turned into the rest frame of each object, where the object is just a thing at rest, and
+//! followed back until it meets it. That a picture made so agrees with an ordinary picture of the
+//! photosurface is a statement about both (`tests/render.rs`).
+
+mod body;
+mod camera;
+mod caster;
+mod cone;
+mod lettering;
+mod look;
+mod paint;
+mod picture;
+mod scenery;
+mod sight;
+mod sphere;
+mod stroke;
+mod turned;
+
+pub use camera::{Camera, CameraError, MAX_PICTURE_SIDE, PictureSize, Projection};
+pub use lettering::{lettering, lettering_width};
+pub use paint::RenderError;
+pub use picture::Picture;
+pub use scenery::{PictureOptions, Scenery, Viewpoint};
+pub use stroke::Strokes;

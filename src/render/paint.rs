@@ -1,0 +1,286 @@
+//! What a surface looks like: base colour, texture, opacity.
+
+use std::sync::Arc;
+
+use glam::{DAffine2, DVec2, DVec4, Vec3, Vec4};
+use thiserror::Error;
+
+use crate::mesh::{AlphaMode, Color, Material, Texture, Wrap};
+
+/// Why something cannot be drawn.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// A texture that is no picture.
+    #[error("the texture {name} of \"{object}\" cannot be decoded, expected PNG or JPEG")]
+    Texture {
+        /// The object that it is on.
+        object: String,
+        /// As the source names it.
+        name: String,
+        /// What is wrong with it.
+        source: image::ImageError,
+    },
+}
+
+/// A material, ready to be looked at: its base colour.
+///
+/// There is no light but the lamp at the eye, so gloss, metal and bumps stay out of pictures.
+pub(super) struct Paint {
+    base_color: Vec4,
+    texture: Option<Placed>,
+    alpha_mode: AlphaMode,
+    pub(super) double_sided: bool,
+    /// Whether it has its colour whatever the light.
+    pub(super) unlit: bool,
+}
+
+/// A texture and how it is laid on a surface.
+struct Placed {
+    pixels: Pixels,
+    set: usize,
+    transform: DAffine2,
+}
+
+impl Paint {
+    /// White on both sides: what has no material, also in the files that are written of it.
+    pub(super) fn plain() -> Self {
+        Self {
+            base_color: Vec4::ONE,
+            texture: None,
+            alpha_mode: AlphaMode::Opaque,
+            double_sided: true,
+            unlit: false,
+        }
+    }
+
+    /// The paint of `object`'s material.
+    ///
+    /// # Errors
+    ///
+    /// A texture that is neither PNG nor JPEG.
+    pub(super) fn new(material: Option<&Arc<Material>>, object: &str) -> Result<Self, RenderError> {
+        let Some(material) = material else {
+            return Ok(Self::plain());
+        };
+        let texture = material.base_color_texture().map(|(texture, set)| {
+            let (transform, other_set) = material.base_color_transform();
+            let pixels = Pixels::decode(texture, object)?;
+            Ok(Placed {
+                pixels,
+                set: other_set.unwrap_or(set) as usize,
+                transform,
+            })
+        });
+        Ok(Self {
+            base_color: DVec4::from(material.base_color()).as_vec4(),
+            texture: texture.transpose()?,
+            alpha_mode: material.alpha_mode(),
+            double_sided: material.double_sided(),
+            unlit: material.is_unlit(),
+        })
+    }
+
+    /// Which set of texture coordinates it uses, if any.
+    pub(super) fn texture_set(&self) -> Option<usize> {
+        self.texture.as_ref().map(|texture| texture.set)
+    }
+
+    /// Linear colour and opacity at `texture`, where the vertices have the colour `vertex`.
+    pub(super) fn color_at(&self, texture: DVec2, vertex: Vec4) -> (Vec3, f32) {
+        let picture = self.texture.as_ref().map_or(Vec4::ONE, |placed| {
+            let place = placed.transform.transform_point2(texture);
+            placed.pixels.at(place)
+        });
+        let color = self.base_color * picture * vertex;
+        let opacity = match self.alpha_mode {
+            AlphaMode::Opaque => 1.0,
+            AlphaMode::Mask(least) => f32::from(f64::from(color.w) >= least),
+            AlphaMode::Blend => color.w.clamp(0.0, 1.0),
+        };
+        (color.truncate(), opacity)
+    }
+}
+
+/// A decoded texture.
+struct Pixels {
+    image: image::RgbaImage,
+    /// Whether it is magnified without mixing pixels.
+    nearest: bool,
+    /// Beyond left and right, and beyond top and bottom.
+    wrap: [Wrap; 2],
+    /// Linear values of the 256 that a byte can say in sRGB.
+    linear: [f32; 256],
+}
+
+impl Pixels {
+    fn decode(texture: &Texture, object: &str) -> Result<Self, RenderError> {
+        // Without one that every program can read there are others, which the decoder refuses by their kind.
+        let file = texture.image().or(texture.images().first());
+        let bytes = file.map_or(&[][..], |file| file.bytes());
+        let image = image::load_from_memory(bytes).map_err(|source| {
+            let name = file.and_then(|file| file.name());
+            RenderError::Texture {
+                object: object.to_owned(),
+                name: name
+                    .map_or_else(|| "without a name".to_owned(), |name| format!("\"{name}\"")),
+                source,
+            }
+        })?;
+        let linear = std::array::from_fn(|byte| Color([byte as u8; 3]).linear()[0]);
+        Ok(Self {
+            image: image.to_rgba8(),
+            nearest: texture.is_magnified_by_nearest(),
+            wrap: texture.wrap(),
+            linear,
+        })
+    }
+
+    /// Linear colour and opacity. Colours are decoded before they are mixed, as glTF demands.
+    fn at(&self, texture: DVec2) -> Vec4 {
+        let (width, height) = self.image.dimensions();
+        let place = texture * DVec2::new(width.into(), height.into());
+        if self.nearest {
+            return self.pixel(place.floor());
+        }
+        let corner = (place - 0.5).floor();
+        let part = (place - 0.5 - corner).as_vec2();
+        let row = |y: f64| {
+            let left = self.pixel(corner + DVec2::new(0.0, y));
+            left.lerp(self.pixel(corner + DVec2::new(1.0, y)), part.x)
+        };
+        row(0.0).lerp(row(1.0), part.y)
+    }
+
+    fn pixel(&self, place: DVec2) -> Vec4 {
+        let (width, height) = self.image.dimensions();
+        let x = wrapped(place.x, width, self.wrap[0]);
+        let y = wrapped(place.y, height, self.wrap[1]);
+        let [red, green, blue, alpha] = self.image.get_pixel(x, y).0;
+        let linear = |byte: u8| self.linear[usize::from(byte)];
+        Vec4::new(
+            linear(red),
+            linear(green),
+            linear(blue),
+            f32::from(alpha) / 255.0,
+        )
+    }
+}
+
+/// The pixel that stands for the one numbered `index`, a whole number, of `count`.
+fn wrapped(index: f64, count: u32, wrap: Wrap) -> u32 {
+    let length = f64::from(count);
+    let inside = match wrap {
+        Wrap::ClampToEdge => index,
+        Wrap::Repeat => index.rem_euclid(length),
+        Wrap::MirroredRepeat => {
+            let there_and_back = index.rem_euclid(2.0 * length);
+            there_and_back.min(2.0 * length - 1.0 - there_and_back)
+        }
+    };
+    inside.clamp(0.0, length - 1.0) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+    use std::io::Cursor;
+
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::mesh::Image;
+
+    /// Two pixels beside each other: black, opaque, and white, half transparent.
+    fn material(sampler: Option<Value>, mode: Value, transform: Value) -> Arc<Material> {
+        let mut picture = image::RgbaImage::new(2, 1);
+        picture.put_pixel(0, 0, image::Rgba([0, 0, 0, 255]));
+        picture.put_pixel(1, 0, image::Rgba([255, 255, 255, 51]));
+        let mut bytes = Cursor::new(Vec::new());
+        picture
+            .write_to(&mut bytes, image::ImageFormat::Png)
+            .unwrap();
+        of_image(bytes.into_inner(), sampler, mode, transform)
+    }
+
+    fn of_image(
+        bytes: Vec<u8>,
+        sampler: Option<Value>,
+        mode: Value,
+        transform: Value,
+    ) -> Arc<Material> {
+        let image = Arc::new(Image::new(Some("wood"), bytes).unwrap());
+        let texture = Arc::new(Texture::new(image, sampler));
+        let mut properties = json!({ "pbrMetallicRoughness": {
+            "baseColorFactor": [1.0, 0.5, 0.25, 1.0],
+            "baseColorTexture": { "index": 0, "extensions": { "KHR_texture_transform": transform } },
+        } });
+        for (key, value) in mode.as_object().unwrap() {
+            properties[key] = value.clone();
+        }
+        Arc::new(Material::new(properties, vec![texture]).unwrap())
+    }
+
+    fn paint(sampler: Option<Value>, mode: Value) -> Paint {
+        Paint::new(Some(&material(sampler, mode, json!({}))), "x").unwrap()
+    }
+
+    #[test]
+    fn textures_are_mixed_in_linear_light() {
+        let paint = paint(None, json!({ "alphaMode": "BLEND" }));
+        let at = |u| paint.color_at(DVec2::new(u, 0.5), Vec4::ONE);
+        assert_eq!(at(0.25), (Vec3::ZERO, 1.0));
+        assert_eq!(at(0.75), (Vec3::new(1.0, 0.5, 0.25), 0.2));
+        assert!(at(0.5).0.distance(Vec3::new(0.5, 0.25, 0.125)) < 1e-6);
+        // Repeats: a quarter before the beginning is the end.
+        assert_eq!(at(-0.25), at(0.75));
+        assert_eq!(at(2.25), at(0.25));
+        assert!((at(0.0).0.x - 0.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn textures_continue_as_their_sampler_says() {
+        let indices = |wrap| [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0].map(|i| wrapped(i, 2, wrap));
+        assert_eq!(indices(Wrap::Repeat), [1, 0, 1, 0, 1, 0, 1]);
+        assert_eq!(indices(Wrap::ClampToEdge), [0, 0, 0, 0, 1, 1, 1]);
+        assert_eq!(indices(Wrap::MirroredRepeat), [1, 1, 0, 0, 1, 1, 0]);
+        let nearest = json!({ "magFilter": 9728 });
+        let paint = paint(Some(nearest), json!({}));
+        let red = |u| paint.color_at(DVec2::new(u, 0.5), Vec4::ONE).0.x;
+        assert_eq!([red(0.49), red(0.51)], [0.0, 1.0]);
+    }
+
+    #[test]
+    fn opacity_is_what_the_mode_says() {
+        let place = DVec2::new(0.75, 0.5);
+        let opacity = |mode| paint(None, mode).color_at(place, Vec4::ONE).1;
+        assert_eq!(opacity(json!({})), 1.0);
+        assert_eq!(opacity(json!({ "alphaMode": "MASK" })), 0.0);
+        assert_eq!(
+            opacity(json!({ "alphaMode": "MASK", "alphaCutoff": 0.2 })),
+            1.0
+        );
+        assert_eq!(opacity(json!({ "alphaMode": "BLEND" })), 0.2);
+    }
+
+    /// glTF's own formula: scaled, then turned counter-clockwise seen with v down, then moved.
+    #[test]
+    fn textures_are_moved_as_they_say() {
+        let transform = json!({ "offset": [0.25, 0.0], "scale": [1.0, 0.5], "rotation": -FRAC_PI_2, "texCoord": 3 });
+        let material = material(Some(json!({ "magFilter": 9728 })), json!({}), transform);
+        let paint = Paint::new(Some(&material), "x").unwrap();
+        assert_eq!(paint.texture_set(), Some(3));
+        let red = |u, v| paint.color_at(DVec2::new(u, v), Vec4::ONE).0.x;
+        // (u, v) is read at (0.25 - v / 2, u).
+        assert_eq!([red(0.3, 0.0), red(0.3, 0.4)], [0.0, 0.0]);
+        assert_eq!([red(0.3, 0.6), red(0.9, 1.4)], [1.0, 1.0]);
+    }
+
+    #[test]
+    fn a_texture_that_is_no_picture_is_named() {
+        let broken = of_image(b"\x89PNG\r\n\x1a\n".to_vec(), None, json!({}), json!({}));
+        let error = Paint::new(Some(&broken), "chair").err().unwrap();
+        let message = error.to_string();
+        assert!(message.contains("\"wood\" of \"chair\""), "{message}");
+    }
+}

@@ -1,0 +1,362 @@
+//! What stands before the camera, and the picture of it.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::body::{Body, Geometry, Sitter, Stands};
+use super::caster::Caster;
+use super::look::{Look, nearest};
+use super::paint::{Paint, RenderError};
+use super::picture::{Picture, encoded};
+use super::sphere::Ball;
+use super::turned::Turned;
+use super::{Camera, Strokes};
+use crate::mesh::{Appearance, Color, Material, Mesh, Part, Shape};
+use crate::scene::{Object, Source};
+use crate::spacetime::WorldLine;
+
+/// How far facets of a round shape are from it, as a part of its size: less than a tenth of a pixel where it fills
+/// a picture 1000 pixels wide.
+const FACETS: f64 = 1e-4;
+
+/// Things to take pictures of.
+///
+/// Three kinds: objects *at rest* in their own frames, which an observer sees by their light (the method of
+/// rays); *photosurfaces*, mapped already, which the same observer sees as they stand (the method of
+/// meshes); and *plain* things in the observer's frame, with no light to travel. From outside all are drawn as
+/// they stand. Plain things can be *ghosts* too: seen through, and through what is in front of them.
+///
+/// # Shading
+///
+/// A lamp shines from the eye: a surface is as bright as the cosine between its normal and the direction to
+/// the eye, on top of a little light from everywhere. For an observer in motion these are normal and
+/// direction in the *rest frame* of the object: there its surface scatters light, and only there does the angle say how
+/// much of it. In the observer's frame the photosurface of whatever comes towards the observer is so long
+/// that all of it would be seen at grazing incidence, and dark. For photosurfaces, normals are taken back to the rest
+/// frame; so both methods shade alike.
+///
+/// # Example
+///
+/// ```
+/// use photosurface::{
+///     Camera, DVec3, PictureOptions, PictureSize, Projection, Scene, Scenery, Stage, Viewpoint, load_models,
+/// };
+///
+/// let scene = Scene::from_json(
+///     r#"{ "observer": { "velocity": { "beta": 0.8 } },
+///          "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1 } }, "position": [0, 0, -5] } ] }"#,
+/// )?;
+/// let (models, _) = load_models(&scene, ".".as_ref())?;
+/// let stage = Stage::new(scene, models);
+/// let mut scenery = Scenery::new();
+/// for (object, parts) in stage.objects() {
+///     for (_, part) in parts {
+///         scenery.add_at_rest(object, part)?;
+///     }
+/// }
+/// let camera = Camera::new(PictureSize::new(64, 48)?, Projection::Pinhole { vertical_fov_deg: 30.0 }, DVec3::NEG_Z)?;
+/// let observer = stage.scene().observer().world_line();
+/// let picture = scenery.picture(
+///     &camera,
+///     Viewpoint::Observer(&observer, 0.0),
+///     PictureOptions::default(),
+///     &|| (),
+/// );
+/// assert_ne!(picture.pixel(32, 24), picture.pixel(0, 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Default)]
+pub struct Scenery {
+    bodies: Vec<Body>,
+    /// Each with its linear colour.
+    ghosts: Vec<(Body, Vec3)>,
+}
+
+/// Where the picture is taken.
+#[derive(Clone, Copy, Debug)]
+pub enum Viewpoint<'a> {
+    /// By the observer, at a proper time on its worldline.
+    Observer(&'a WorldLine, f64),
+    /// At a place in the frame in which things stand.
+    Outside(DVec3),
+}
+
+/// How a picture is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PictureOptions {
+    /// Rays a pixel along each side: N is N x N rays, evenly spread; at least 1.
+    pub samples: u32,
+    /// What is seen where nothing is.
+    pub background: Color,
+    /// The colour in which the edges of the triangles of photosurfaces are drawn, if they are.
+    pub wireframe: Option<Color>,
+}
+
+impl Default for PictureOptions {
+    /// Nine rays a pixel before a dark background.
+    fn default() -> Self {
+        Self {
+            samples: 3,
+            background: Color([0x14, 0x17, 0x1c]),
+            wireframe: None,
+        }
+    }
+}
+
+impl Scenery {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a part of `object`, at rest, in the object's rest frame.
+    ///
+    /// Spheres, cylinders, rods and cones are met as the surfaces that they are, whatever facets their parts have. A torus
+    /// gets facets within a ten thousandth of its size, unless it has a resolution of its own: the
+    /// quartic of the true one is ill-conditioned wherever a ray grazes it.
+    ///
+    /// # Errors
+    ///
+    /// A texture that cannot be decoded.
+    pub fn add_at_rest(&mut self, object: &Object, part: &Part) -> Result<(), RenderError> {
+        let geometry = match &object.source {
+            Source::Shape(Shape::Sphere(sphere), _) => {
+                Geometry::Ball(Ball::new(sphere.clone(), object.model_to_rest()))
+            }
+            Source::Shape(shape, appearance) => match shape.bands() {
+                Some(bands) => Geometry::Turned(Turned::new(bands, object.model_to_rest())),
+                None => Geometry::Mesh(Caster::new(fine_mesh(object, shape, appearance, part))),
+            },
+            _ => Geometry::Mesh(Caster::new(part.mesh().clone())),
+        };
+        let stands = Stands::AtRest(object.world_line());
+        self.add(geometry, part.material.as_ref(), &object.name, stands)
+    }
+
+    /// Adds a photosurface of `object`, in the observer's frame with the observer at the origin.
+    ///
+    /// # Errors
+    ///
+    /// A texture that cannot be decoded.
+    pub fn add_photosurface(
+        &mut self,
+        object: &Object,
+        mesh: &Mesh,
+        material: Option<&Arc<Material>>,
+    ) -> Result<(), RenderError> {
+        let geometry = Geometry::Mesh(Caster::new(mesh.clone()));
+        let stands = Stands::Mapped(object.world_line());
+        self.add(geometry, material, &object.name, stands)
+    }
+
+    /// Adds a thing as it stands in the observer's frame.
+    ///
+    /// # Errors
+    ///
+    /// A texture that cannot be decoded.
+    pub fn add_plain(&mut self, part: &Part) -> Result<(), RenderError> {
+        let geometry = Geometry::Mesh(Caster::new(part.mesh().clone()));
+        self.add(geometry, part.material.as_ref(), &part.name, Stands::Plain)
+    }
+
+    /// Adds a thing that stands in the observer's frame and is only hinted at, in one colour.
+    pub fn add_ghost(&mut self, mesh: Mesh, color: Color) {
+        let paint = Paint::plain();
+        let body = Body {
+            geometry: Geometry::Mesh(Caster::new(mesh)),
+            paint,
+            stands: Stands::Plain,
+        };
+        self.ghosts.push((body, color.linear().into()));
+    }
+
+    fn add(
+        &mut self,
+        geometry: Geometry,
+        material: Option<&Arc<Material>>,
+        object: &str,
+        stands: Stands,
+    ) -> Result<(), RenderError> {
+        self.bodies.push(Body {
+            geometry,
+            paint: Paint::new(material, object)?,
+            stands,
+        });
+        Ok(())
+    }
+
+    /// The picture that `camera` takes; `row_done` is called after every row.
+    ///
+    /// Pixels are independent, rows are shared out among threads: the bytes are the same for any number
+    /// of them. Memory is that of the picture.
+    pub fn picture(
+        &self,
+        camera: &Camera,
+        viewpoint: Viewpoint,
+        options: PictureOptions,
+        row_done: &(dyn Fn() + Sync),
+    ) -> Picture {
+        let eye = viewpoint.eye();
+        let look = Look {
+            eye,
+            sitters: sitters(self.bodies.iter(), viewpoint),
+            ghosts: sitters(self.ghosts.iter().map(|(body, _)| body), viewpoint),
+            ghost_colors: self.ghosts.iter().map(|&(_, color)| color).collect(),
+            background: options.background.linear().into(),
+            wires: options
+                .wireframe
+                .map(|color| (color.linear().into(), camera)),
+        };
+        let samples = options.samples.max(1);
+        let size = camera.size();
+        let mut bytes = vec![0; 3 * size.width() as usize * size.height() as usize];
+        let rows = bytes.par_chunks_mut(3 * size.width() as usize);
+        rows.enumerate().for_each(|(y, row)| {
+            for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
+                let corner = DVec2::new(x as f64, y as f64);
+                let mut sum = Vec3::ZERO;
+                for part in 0..samples * samples {
+                    let inside = DVec2::new((part % samples).into(), (part / samples).into());
+                    let place = corner + (inside + 0.5) / f64::from(samples);
+                    sum += look.light(place, camera.direction(place));
+                }
+                pixel.copy_from_slice(&encoded(sum / (samples * samples) as f32));
+            }
+            row_done();
+        });
+        Picture::new(size, bytes)
+    }
+
+    /// Draws lines that stand in the observer's frame onto a picture that `camera` took; what is behind
+    /// something is faint.
+    pub fn draw(
+        &self,
+        picture: &mut Picture,
+        camera: &Camera,
+        viewpoint: Viewpoint,
+        strokes: &Strokes<DVec3>,
+    ) {
+        let eye = viewpoint.eye();
+        let sitters = sitters(self.bodies.iter(), viewpoint);
+        let hidden = |seen, distance| nearest(&sitters, eye, seen, 0.0, distance, false).is_some();
+        picture.draw_in_space(strokes, camera, eye, hidden);
+    }
+}
+
+/// The mesh of a part that a shape is, fine enough for pictures.
+fn fine_mesh(object: &Object, shape: &Shape, appearance: &Appearance, part: &Part) -> Mesh {
+    let size = part
+        .mesh()
+        .bounds()
+        .map_or(0.0, |(low, high)| low.distance(high));
+    let fine = shape.within(FACETS * size / object.scale.max_element());
+    let made = fine.model(appearance).ok();
+    let made = made.and_then(|mut model| model.parts.pop());
+    let made = made.map(|part| part.transformed(&object.model_to_rest()));
+    made.as_ref().unwrap_or(part).mesh().clone()
+}
+
+impl Viewpoint<'_> {
+    pub(super) fn eye(&self) -> DVec3 {
+        match *self {
+            Viewpoint::Observer(..) => DVec3::ZERO,
+            Viewpoint::Outside(place) => place,
+        }
+    }
+}
+
+fn sitters<'a>(bodies: impl Iterator<Item = &'a Body>, viewpoint: Viewpoint) -> Vec<Sitter<'a>> {
+    let eye = viewpoint.eye();
+    bodies
+        .map(|body| Sitter::new(body, eye, viewpoint))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::super::body::AMBIENT;
+    use super::*;
+    use crate::render::{PictureSize, Projection};
+
+    /// A large square at `z` that faces +z, of a linear colour and an opacity.
+    fn square(z: f64, base_color: [f32; 4], alpha_mode: &str, double_sided: bool) -> Part {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corners = corners.map(|(x, y)| DVec3::new(100.0 * x, 100.0 * y, z));
+        let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+        let material = json!({
+            "pbrMetallicRoughness": { "baseColorFactor": base_color },
+            "alphaMode": alpha_mode,
+            "doubleSided": double_sided,
+        });
+        let material = Material::new(material, vec![]).unwrap();
+        Part::new("square", mesh, Some(Arc::new(material))).unwrap()
+    }
+
+    /// What one pixel shows, seen from `eye` along `look`.
+    fn pixel(parts: &[Part], eye: DVec3, look: DVec3) -> [u8; 3] {
+        let mut scenery = Scenery::new();
+        for part in parts {
+            scenery.add_plain(part).unwrap();
+        }
+        let size = PictureSize::new(1, 1).unwrap();
+        let projection = Projection::Pinhole {
+            vertical_fov_deg: 1.0,
+        };
+        let camera = Camera::new(size, projection, look).unwrap();
+        let options = PictureOptions {
+            samples: 1,
+            background: Color([0, 0, 255]),
+            wireframe: None,
+        };
+        let picture = scenery.picture(&camera, Viewpoint::Outside(eye), options, &|| ());
+        picture.pixel(0, 0)
+    }
+
+    #[test]
+    fn what_is_clear_lets_through_what_is_behind() {
+        let (red, green) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+        let of = |z, [r, g, b]: [f32; 3], opacity, mode| square(z, [r, g, b, opacity], mode, true);
+        let seen = |parts: &[Part]| pixel(parts, DVec3::Z, DVec3::NEG_Z);
+        let half = |parts: &[Part]| {
+            let linear = Color(seen(parts)).linear();
+            linear.map(|channel| (channel * 100.0).round())
+        };
+        let back = of(-9.0, green, 1.0, "OPAQUE");
+        assert_eq!(seen(&[]), [0, 0, 255]);
+        assert_eq!(seen(std::slice::from_ref(&back)), [0, 255, 0]);
+        let pane = of(-3.0, red, 0.5, "BLEND");
+        assert_eq!(half(&[back.clone(), pane.clone()]), [50.0, 50.0, 0.0]);
+        assert_eq!(half(&[pane]), [50.0, 0.0, 50.0]);
+        let hole = of(-3.0, red, 0.4, "MASK");
+        assert_eq!(seen(&[hole, back.clone()]), [0, 255, 0]);
+        let no_hole = of(-3.0, red, 0.6, "MASK");
+        assert_eq!(seen(&[no_hole, back]), [255, 0, 0]);
+    }
+
+    #[test]
+    fn backs_are_there_only_where_the_material_says_so() {
+        let white = [1.0; 4];
+        let behind = |double_sided| {
+            let part = square(0.0, white, "OPAQUE", double_sided);
+            pixel(&[part], DVec3::NEG_Z, DVec3::Z)
+        };
+        assert_eq!(behind(true), [255; 3]);
+        assert_eq!(behind(false), [0, 0, 255]);
+    }
+
+    #[test]
+    fn the_lamp_is_at_the_eye() {
+        let part = square(0.0, [1.0; 4], "OPAQUE", true);
+        let look = DVec3::new(3.0, 0.0, -4.0);
+        let [level, ..] = Color(pixel(&[part], -look, look)).linear();
+        // A cosine of 0.8, to half a step of 8 bits.
+        assert!(
+            (level - (AMBIENT + (1.0 - AMBIENT) * 0.8)).abs() < 0.005,
+            "{level}"
+        );
+    }
+}

@@ -1,0 +1,244 @@
+//! Light that reaches an observer, in the rest frame of what it came from.
+
+use glam::{DMat3, DVec3};
+
+use super::cone::Cone;
+use crate::spacetime::{Lorentz, WorldLine, unit};
+
+/// How light that an observer sees at one event came, for everything that moves with one velocity.
+///
+/// # Derivation
+///
+/// Light seen now in the unit direction `s` at the distance `l` comes from the event `l (-1, s)` of the
+/// observer's frame, for some `l`: a straight line through the observation, in every frame. In the rest frame, in
+/// which the observer moves along `n` with rapidity `eta`, and with `theta` between `n` and `s`, it is
+/// `l (-r, v)` where
+///
+/// ```text
+/// r = sin^2(theta/2) e^eta + cos^2(theta/2) e^-eta        v = s_across + n (cos^2(theta/2) e^-eta - sin^2(theta/2) e^eta)
+/// sin(theta/2) = |s - n| / 2                              cos(theta/2) = |s + n| / 2
+/// ```
+///
+/// and `|v| = r`: nothing cancels at any speed. So a ray in the rest frame is followed along `v`, and where it
+/// hits after the distance `r l`, the thing is seen at the distance `l`: of several objects in
+/// different motion the one with the smallest `l` hides the others. `1 / r` is the Doppler factor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sight {
+    /// The observer's place in the rest frame.
+    observer_rest: DVec3,
+    /// The observer's direction of motion in the rest frame.
+    along: DVec3,
+    rapidity: f64,
+    /// `exp(rapidity)` and `exp(-rapidity)`.
+    grow: f64,
+    shrink: f64,
+    /// From the observer's axes to those that the boost alone would give.
+    observer_to_boosted: DMat3,
+}
+
+/// A ray of light that reaches the observer, in a rest frame, followed back from the observer.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RestRay {
+    pub(super) origin: DVec3,
+    /// A unit vector.
+    pub(super) direction: DVec3,
+    /// Distance at rest over distance seen: the reciprocal of the Doppler factor.
+    pub(super) stretch: f64,
+}
+
+impl Sight {
+    /// How `observer`, at `proper_time` on its worldline, sees what moves along with `object`.
+    pub(super) fn new(observer: &WorldLine, object: &WorldLine, proper_time: f64) -> Self {
+        let rest_to_observer = Lorentz::between(object.velocity, observer.velocity);
+        let relative = rest_to_observer.boost_velocity();
+        // Differences are taken of the events as they are given, before anything grows by `gamma`.
+        let start = Lorentz::boost(object.velocity).apply(observer.origin - object.origin);
+        let flight = WorldLine {
+            origin: start,
+            velocity: relative,
+        };
+        Self {
+            observer_rest: flight.at(proper_time).position,
+            along: relative.direction(),
+            rapidity: relative.rapidity(),
+            grow: relative.rapidity().exp(),
+            shrink: (-relative.rapidity()).exp(),
+            observer_to_boosted: DMat3::from_quat(rest_to_observer.rotation().inverse()),
+        }
+    }
+
+    /// The ray that is seen in the unit direction `seen`.
+    pub(super) fn ray(&self, seen: DVec3) -> RestRay {
+        let Light {
+            across,
+            par,
+            stretch,
+        } = self.light(seen);
+        // Scaled before it is squared: `stretch` may be as large as exp(700).
+        let direction = across / stretch + self.along * (par / stretch);
+        RestRay {
+            origin: self.observer_rest,
+            direction: direction.normalize(),
+            stretch,
+        }
+    }
+
+    /// The part of the observer's sky that a ball takes up, given in the rest frame.
+    pub(super) fn cone(&self, center: DVec3, radius: f64) -> Cone {
+        let boosted_to_observer = self.observer_to_boosted.transpose();
+        Cone::of_ball(self.observer_rest, center, radius).aberrated(
+            self.along,
+            self.rapidity,
+            boosted_to_observer,
+        )
+    }
+
+    /// The unit normal at rest of a surface that has the normal `normal` where it is seen, in the unit
+    /// direction `seen`; `None` if that has no direction.
+    ///
+    /// # Derivation
+    ///
+    /// What is at the offset `x` from the observer at rest is seen at `x_across + n gamma (x_par + beta |x|)`; a
+    /// normal at rest is the gradient by `x` of `normal . seen place`, which is
+    /// `N_across + (N.n) (gamma n + gamma beta x / |x|)`. With `x / |x| = v / r` and
+    /// `gamma (1 + beta v_par / r) = 1 / r` that is, times `r`, `r N_across + (N.n) (n + gamma beta s_across)`.
+    pub(super) fn normal_at_rest(&self, normal: DVec3, seen: DVec3) -> Option<DVec3> {
+        let Light {
+            across, stretch, ..
+        } = self.light(seen);
+        let normal = self.observer_to_boosted * normal;
+        let normal_along = normal.dot(self.along);
+        let normal_across = self.along.cross(normal).cross(self.along);
+        let slanted = self.along + across * self.rapidity.sinh();
+        unit(normal_across * stretch + slanted * normal_along)
+    }
+
+    fn light(&self, seen: DVec3) -> Light {
+        let seen = self.observer_to_boosted * seen;
+        let (to_front, to_back) = (seen - self.along, seen + self.along);
+        let sin_squared = to_front.length_squared() / 4.0;
+        let cos_squared = to_back.length_squared() / 4.0;
+        let Self { grow, shrink, .. } = *self;
+        // Of the closer of both differences: its part along the motion, which is that of a rounded unit vector,
+        // would be large beside a small part across.
+        let closer = if sin_squared < cos_squared {
+            to_front
+        } else {
+            to_back
+        };
+        let across = self.along.cross(closer).cross(self.along);
+        Light {
+            across,
+            par: cos_squared * shrink - sin_squared * grow,
+            stretch: cos_squared * shrink + sin_squared * grow,
+        }
+    }
+}
+
+/// The kernel of [`Sight`]: `s_across`, `v_par` and `r`.
+struct Light {
+    across: DVec3,
+    par: f64,
+    stretch: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spacetime::{Event, Velocity};
+
+    fn line(time: f64, position: DVec3, velocity: Velocity) -> WorldLine {
+        WorldLine {
+            origin: Event::new(time, position),
+            velocity,
+        }
+    }
+
+    fn directions() -> Vec<DVec3> {
+        let steps = [-1.0, -0.3, 0.0, 1e-9, 0.7];
+        let all =
+            (0..125).map(|k: usize| DVec3::new(steps[k % 5], steps[k / 5 % 5], steps[k / 25]));
+        all.filter_map(unit).collect()
+    }
+
+    /// Through the scene frame, where all axes are given: two pure boosts, no rotation anywhere.
+    #[test]
+    fn rays_are_those_of_two_boosts_through_the_scene() {
+        let speeds = [0.0, 0.3, 0.9, 0.99];
+        let ways = [DVec3::X, DVec3::new(-0.3, 0.5, 0.6), DVec3::NEG_Z];
+        for (speed, other) in speeds.iter().flat_map(|a| speeds.map(|b| (*a, b))) {
+            for (way, other_way) in ways.iter().flat_map(|a| ways.map(|b| (*a, b))) {
+                let observer = Velocity::from_beta(speed, way).unwrap();
+                let object = Velocity::from_beta(other, other_way).unwrap();
+                let seen_from = line(0.5, DVec3::new(1.0, 2.0, -3.0), observer);
+                let thing = line(0.0, DVec3::new(0.25, -1.0, 2.0), object);
+                let sight = Sight::new(&seen_from, &thing, 1.5);
+                for seen in directions() {
+                    let ray = sight.ray(seen);
+                    let distance = 3.0;
+                    let to_scene = Lorentz::boost(observer.reversed());
+                    let emission =
+                        seen_from.at(1.5) + to_scene.apply(Event::new(-distance, seen * distance));
+                    let rest = Lorentz::boost(object).apply(emission - thing.origin);
+                    let found = ray.origin + ray.direction * (ray.stretch * distance);
+                    // Each boost magnifies by at most 14.2, and so do the roundings of its coordinates.
+                    let limit = 200.0 * 20.0 * 14.2 * f64::EPSILON;
+                    assert!(found.distance(rest.position) < limit, "{found} {rest:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn at_any_speed_directions_are_aberrated_by_the_half_angle() {
+        for rapidity in [0.0, 1e-9, 1.0, 20.0, 350.0] {
+            let velocity = Velocity::from_rapidity(rapidity, DVec3::NEG_Z).unwrap();
+            let observer = line(0.0, DVec3::ZERO, velocity);
+            let sight = Sight::new(&observer, &line(0.0, DVec3::ZERO, Velocity::ZERO), 0.0);
+            for seen in directions() {
+                let ray = sight.ray(seen);
+                assert!(ray.stretch > 0.0 && ray.stretch.is_finite());
+                assert!((ray.direction.length() - 1.0).abs() < 1e-15);
+                let half = |v: DVec3| v.x.hypot(v.y).atan2(-v.z) / 2.0;
+                let expected = (half(seen).sin() * rapidity.exp()).atan2(half(seen).cos());
+                assert!(
+                    (half(ray.direction) - expected).abs() < 1e-15,
+                    "{rapidity} {seen} {} {expected}",
+                    half(ray.direction)
+                );
+                // Around the direction of motion nothing turns.
+                let (a, b) = (seen.truncate(), ray.direction.truncate());
+                assert!(a.perp_dot(b).abs() <= 4.0 * f64::EPSILON * b.length().max(1e-300));
+            }
+        }
+    }
+
+    /// Against differences of the ray's own map: a small triangle, seen point by point.
+    #[test]
+    fn normals_at_rest_are_those_of_the_surface_that_is_seen() {
+        let velocity = Velocity::from_beta(0.8, DVec3::new(0.2, -1.0, 0.4)).unwrap();
+        let other = Velocity::from_beta(0.6, DVec3::X).unwrap();
+        let sight = Sight::new(
+            &line(0.0, DVec3::ZERO, velocity),
+            &line(0.0, DVec3::Y, other),
+            0.0,
+        );
+        for seen in directions() {
+            let (u, v) = seen.any_orthonormal_pair();
+            // Three points of a slanted seen plane, and where they are at rest.
+            let corners = [DVec3::ZERO, u + 0.3 * seen, v - 0.8 * seen].map(|offset| {
+                let place = seen + 1e-5 * offset;
+                let distance = place.length();
+                let ray = sight.ray(place / distance);
+                (place, ray.direction * (ray.stretch * distance))
+            });
+            let normal = |k: fn(&(DVec3, DVec3)) -> DVec3| {
+                let [a, b, c] = [k(&corners[0]), k(&corners[1]), k(&corners[2])];
+                (b - a).cross(c - a).normalize()
+            };
+            let found = sight.normal_at_rest(normal(|c| c.0), seen).unwrap();
+            // Of second order in 1e-5, times the square of a Doppler factor of at most 8.
+            assert!(found.distance(normal(|c| c.1)) < 1e-3, "{seen}");
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! `photosurface render` as users run it: every flag reaches the picture, nonsense is refused, nothing half made stays.
+
+mod common;
+
+use common::command::Workplace;
+
+/// A scene with one sphere that takes no time.
+const BALL: &str = r#"{ "observer": { "velocity": { "beta": 0.6, "direction": [1, 0, 0] } },
+  "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1, "resolution": 8 } }, "position": [0, 3, 0] } ],
+  "tolerance": { "relative": 0.1 } }"#;
+
+fn with_ball() -> Workplace {
+    let workplace = Workplace::new();
+    workplace.write("ball.json", BALL);
+    workplace
+}
+
+/// Width and height that a PNG says, and whether it is one.
+fn png_size(bytes: &[u8]) -> (u32, u32) {
+    assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"));
+    let number = |at: usize| {
+        bytes[at..at + 4]
+            .iter()
+            .fold(0, |n, &b| n << 8 | u32::from(b))
+    };
+    (number(16), number(20))
+}
+
+#[test]
+fn every_built_in_scene_is_rendered_by_both_methods_and_from_outside() {
+    let workplace = Workplace::new();
+    for name in ["sphere", "cube", "lattice", "street", "snapshot"] {
+        for how in [
+            "",
+            "--method mesh",
+            "--view outside",
+            "--full-sky",
+            "--view outside --full-sky",
+        ] {
+            let line =
+                format!("render --example {name} {how} --steps 0 --size 32x18 -o {name}.png");
+            let run = workplace.run(&line).success();
+            assert!(run.stdout.is_empty(), "{run}");
+            let picture = workplace.read(&format!("{name}.png"));
+            assert_eq!(png_size(&picture), (32, 18), "{run}");
+        }
+    }
+}
+
+#[test]
+fn a_picture_for_each_step_or_one_for_stdout() {
+    let workplace = with_ball();
+    let line = "render ball.json --size 16x9 --steps 0,1,2";
+    workplace.run(line).success();
+    let pictures = ["0", "1", "2"].map(|k| format!("ball_observer_step00{k}.png"));
+    for picture in &pictures {
+        assert_eq!(png_size(&workplace.read(picture)), (16, 9));
+    }
+    assert_ne!(workplace.read(&pictures[0]), workplace.read(&pictures[2]));
+    let run = workplace.run("render ball.json --size 16x9 -o -").success();
+    assert_eq!(run.stdout, workplace.read(&pictures[0]));
+    workplace
+        .run(&format!("{line} -o -"))
+        .error(&["3 steps", "--steps"]);
+}
+
+#[test]
+fn every_flag_of_a_picture_changes_it() {
+    let workplace = with_ball();
+    let picture = |flags: &str| {
+        let line = format!("render ball.json --size 32x18 {flags} -o -");
+        workplace.run(&line).success().stdout
+    };
+    let plain = picture("");
+    for flags in [
+        "--fov 30",
+        "--look 0,1,0.1",
+        "--target 0,1,0.1",
+        "--samples 1",
+        "--background #ffffff",
+        "--full-sky",
+        "--view outside",
+        "--method mesh --no-subdivide --beta 0.99",
+    ] {
+        assert_ne!(picture(flags), plain, "{flags}");
+    }
+    let outside = picture("--view outside");
+    for flags in [
+        "--from 0,0,20",
+        "--target 0,3,0",
+        "--look 0,0,-1",
+        "--fov 50",
+        "--wireframe",
+        "--ghost rest",
+        "--ghost contracted",
+        "--axes",
+        "--scale-bar",
+        "--together --steps 0,9",
+    ] {
+        assert_ne!(
+            picture(&format!("--view outside {flags}")),
+            outside,
+            "{flags}"
+        );
+    }
+}
+
+#[test]
+fn pictures_that_make_no_sense_are_refused_before_any_work() {
+    let workplace = with_ball();
+    for (flags, words) in [
+        ("--view outside --method rays", vec!["--method mesh"]),
+        ("--from 1,2,3", vec!["--view outside"]),
+        ("--together", vec!["--view outside"]),
+        ("--axes", vec!["--axes", "--sheet"]),
+        ("--ghost rest", vec!["--ghost", "--view outside"]),
+        ("--wireframe", vec!["--wireframe", "--method mesh"]),
+        ("--sheet --view outside", vec!["cannot be used with"]),
+        (
+            "--sheet --steps 0..1/99 --size 400x9",
+            vec!["--sheet", "16384"],
+        ),
+        ("--size 0x9", vec!["0 x 9", "16384"]),
+        ("--fov 180", vec!["180", "less than 180"]),
+        ("--look 0,0,0", vec!["not zero"]),
+        ("--background red", vec!["#rrggbb"]),
+        ("--lod 1e-2,1e-3", vec!["--lod"]),
+        ("-o ball.jpg", vec![".png"]),
+    ] {
+        workplace
+            .run(&format!("render ball.json {flags}"))
+            .error(&words);
+    }
+    assert_eq!(workplace.files(), ["ball.json"]);
+    let mesh =
+        "render ball.json --size 16x9 --method mesh --no-subdivide --tolerance 1e-9 -o m.png";
+    let run = workplace.run(mesh);
+    assert_eq!(run.status, 1, "{run}");
+    assert_eq!(png_size(&workplace.read("m.png")), (16, 9));
+}
+
+/// Columns are steps; above what `render` alone shows, below what `--view outside` does.
+#[test]
+fn a_sheet_shows_every_step_twice() {
+    let workplace = with_ball();
+    let flags = "render ball.json --steps 0,3 --size 40x30";
+    workplace.run(&format!("{flags} --sheet")).success();
+    let sheet = workplace.read("ball_sheet.png");
+    assert_eq!(png_size(&sheet), (2 * 40 + 4, 2 * 30 + 4));
+    let plain = pixels(&sheet);
+    for changed in [
+        "--fov 90",
+        "--from 5,5,30",
+        "--method mesh",
+        "--wireframe",
+        "--ghost rest",
+    ] {
+        let run = workplace.run(&format!("{flags} --sheet {changed} -o -"));
+        let halves = |all: &[u8]| {
+            let (above, below) = all.split_at(3 * 84 * 32);
+            [above.to_vec(), below.to_vec()]
+        };
+        let [above, below] = halves(&pixels(&run.success().stdout));
+        let [plain_above, plain_below] = halves(&plain);
+        let expected = match changed {
+            "--fov 90" => [true, true],
+            "--method mesh" => [true, false],
+            _ => [false, true],
+        };
+        let found = [above != plain_above, below != plain_below];
+        assert_eq!(found, expected, "{changed}");
+    }
+}
+
+fn pixels(png: &[u8]) -> Vec<u8> {
+    let picture = image::load_from_memory(png).expect("a picture");
+    picture.to_rgb8().into_raw()
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_render_leaves_whole_pictures_or_none() {
+    for signal in ["INT", "TERM"] {
+        let workplace = Workplace::new();
+        let steps = 4000;
+        let line = format!("render --steps=-6..6/{steps} --size 96x64 -o out.png");
+        let status = workplace.interrupt(&line, signal, |files| files.len() >= 3);
+        assert_eq!(status, Some(130), "{signal}");
+        let files = workplace.files();
+        assert!(files.len() < steps, "it was done before the signal");
+        for file in files {
+            assert!(file.starts_with("out_step"), "{signal}: {file}");
+            assert_eq!(png_size(&workplace.read(&file)), (96, 64));
+            assert_eq!(pixels(&workplace.read(&file)).len(), 3 * 96 * 64);
+        }
+    }
+}
+
+/// A picture of many rows is interrupted while it is made.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_picture_is_not_there() {
+    use std::time::{Duration, Instant};
+    let workplace = Workplace::new();
+    let start = Instant::now();
+    let line = "render --example lattice --size 16384x16384 --samples 16 -o out.png";
+    let begun = |_: &[String]| start.elapsed() > Duration::from_millis(300);
+    assert_eq!(workplace.interrupt(line, "INT", begun), Some(130));
+    assert!(workplace.files().is_empty(), "{:?}", workplace.files());
+}
