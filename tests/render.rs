@@ -31,7 +31,7 @@ const BARE: PictureOptions = PictureOptions {
 fn stage(scene: &Value, tolerance: Tolerance) -> Stage {
     let scene = Scene::from_json(&scene.to_string()).expect("a valid scene");
     let scene = scene.with_tolerance_for_all(tolerance);
-    let (models, _) = load_models(&scene, ".".as_ref()).expect("shapes only");
+    let (models, _) = load_models(&scene, ".".as_ref()).expect("shapes, and a fixture");
     Stage::new(scene, models)
 }
 
@@ -40,7 +40,9 @@ fn by_rays(stage: &Stage, camera: &Camera) -> Picture {
     let mut scenery = Scenery::new();
     for (object, parts) in stage.objects() {
         for (_, part) in parts {
-            scenery.add_at_rest(object, part).expect("no textures");
+            scenery
+                .add_at_rest(object, part)
+                .expect("pictures that can be drawn");
         }
     }
     take(stage, &scenery, camera)
@@ -59,7 +61,7 @@ fn by_meshes(stage: &Stage, camera: &Camera, wanted: Wanted) -> (Picture, f64) {
             .expect("photosurfaces are of objects");
         scenery
             .add_photosurface(object, &surface.mesh, surface.material.as_ref())
-            .expect("no textures");
+            .expect("pictures that can be drawn");
         // In degrees, as the tolerance is.
         angle = angle.max(surface.facts.certificate.total.to_radians());
     }
@@ -160,6 +162,15 @@ fn scenes() -> Vec<(&'static str, Value, DVec3, f64)> {
                   "position": [-4.366, -0.3, -5.287], "velocity": { "beta": 0.6, "direction": [-1, 0, 0.2] } },
             ]}),
             DVec3::new(0.0, 0.31, -0.95),
+            24.0,
+        ),
+        (
+            "asteroid",
+            json!({ "observer": { "velocity": { "beta": 0.9, "direction": [-1, 0, 0] } }, "objects": [
+                { "name": "asteroid", "file": "fixtures/meshes/asteroid.glb", "position": [12.4, 0.5, -6],
+                  "rotation": [0.1, 0.3, 0, 0.9486833], "scale": 1.0 },
+            ]}),
+            DVec3::new(0.0, 0.07, -1.0),
             24.0,
         ),
     ]

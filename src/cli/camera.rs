@@ -241,18 +241,21 @@ pub(super) fn outermost(places: Vec<DVec3>) -> Vec<DVec3> {
     if places.len() <= DIRECTIONS {
         return places;
     }
-    let directions = (0..DIRECTIONS).map(|index| {
-        // Evenly over the sphere, along a spiral of the golden angle.
-        let height = (2.0 * index as f64 + 1.0) / DIRECTIONS as f64 - 1.0;
-        let (sin, cos) = (index as f64 * PI * (3.0 - 5f64.sqrt())).sin_cos();
-        let across = (1.0 - height * height).sqrt();
-        DVec3::new(across * cos, height, across * sin)
-    });
     let farthest = |direction: DVec3| {
         let by_distance = |a: &&DVec3, b: &&DVec3| a.dot(direction).total_cmp(&b.dot(direction));
         places.iter().max_by(by_distance).copied()
     };
-    directions.filter_map(farthest).collect()
+    directions().filter_map(farthest).collect()
+}
+
+/// Evenly over the sphere, along a spiral of the golden angle.
+fn directions() -> impl Iterator<Item = DVec3> {
+    (0..DIRECTIONS).map(|index| {
+        let height = (2.0 * index as f64 + 1.0) / DIRECTIONS as f64 - 1.0;
+        let (sin, cos) = (index as f64 * PI * (3.0 - 5f64.sqrt())).sin_cos();
+        let across = (1.0 - height * height).sqrt();
+        DVec3::new(across * cos, height, across * sin)
+    })
 }
 
 /// `WxH`
@@ -285,9 +288,20 @@ mod tests {
             .collect();
         let outer = outermost(ball.clone());
         assert!(outer.len() <= DIRECTIONS && outer.iter().all(|place| ball.contains(place)));
+        // What is farthest along a neighbouring direction is less far by twice what lies between the two at most, for
+        // all are within 1 of the origin.
         for direction in [DVec3::X, DVec3::Y, DVec3::ONE.normalize()] {
-            let farthest = outer.iter().map(|place| place.dot(direction));
-            assert!(farthest.fold(0.0, f64::max) > 0.98);
+            let farthest = |places: &[DVec3]| {
+                let along = places.iter().map(|place| place.dot(direction));
+                along.fold(f64::NEG_INFINITY, f64::max)
+            };
+            let between = directions().map(|other| other.distance(direction));
+            let between = between.fold(f64::INFINITY, f64::min);
+            assert!(between < 0.3, "{between}");
+            assert!(
+                farthest(&outer) >= farthest(&ball) - 2.0 * between,
+                "{direction}"
+            );
         }
         let few = vec![DVec3::ZERO; 3];
         assert_eq!(outermost(few.clone()), few);
