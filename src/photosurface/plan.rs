@@ -1,5 +1,8 @@
 //! How one object becomes photosurfaces at one step: what is allowed, what that takes, and the doing.
 
+mod foresight;
+mod together;
+
 use std::borrow::Cow;
 
 use glam::DVec3;
@@ -12,8 +15,10 @@ use crate::mesh::{Mesh, Part, Shape};
 use crate::scene::Tolerance;
 use crate::tessellate::{
     Allowance, Bounds, Certificate, Counts, Precision, Singles, gap_ceiling, local_stretch,
-    minimum_triangles, nearest_point, predicted_pieces, refine, rounding_bound, triangle_gap,
+    minimum_triangles, nearest_point, refine, rounding_bound, triangle_gap,
 };
+
+pub(super) use foresight::Foresight;
 
 /// What part of the tolerance of a curved shape its facets may use; the rest is for the gap between them.
 ///
@@ -68,15 +73,6 @@ pub(super) struct Plan<'a> {
     precision: Precision,
     /// The box around all steps where they share one mesh in a file, as morph targets.
     travel: Option<(DVec3, DVec3)>,
-}
-
-/// What an object will take, and whether its tolerance can be kept at all.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Foresight {
-    pub(super) triangles: f64,
-    /// Of those, how many there are before any refinement.
-    pub(super) before: f64,
-    pub(super) reachable: bool,
 }
 
 /// Parts of the object at rest and as seen, before any refinement, and what is allowed for that.
@@ -160,74 +156,6 @@ impl<'a> Plan<'a> {
         &self.view
     }
 
-    /// About how many triangles the object will have, and whether they will be within the tolerance.
-    ///
-    /// Of a finer round shape than is at hand each facet stands for several, smaller ones.
-    ///
-    /// `weights` says for each part of how many triangles each of its own is a sample.
-    pub(super) fn foresee(mut self, wanted: Wanted, weights: &[f64]) -> Foresight {
-        let velocity = self.view.relative_velocity();
-        let facets = self.shape.as_ref().map_or(0, Shape::triangle_count);
-        let (draft, each) = if facets > FACETS_MADE_TO_PREDICT {
-            let at_hand = self.placed.parts[0].1.mesh().triangles().len();
-            let each = facets as f64 / at_hand as f64;
-            (self.draft_as_placed(each), each)
-        } else {
-            (self.draft(), 1.0)
-        };
-        let observer = self.view.observer_rest();
-        let facets = draft
-            .parts
-            .iter()
-            .zip(weights)
-            .flat_map(|((_, part), weight)| {
-                let mesh = part.mesh();
-                mesh.triangles().iter().map(move |corners| {
-                    let positions = corners.map(|corner| mesh.positions()[corner as usize]);
-                    let offsets = shrunk(positions, each).map(|position| position - observer);
-                    (weight * each, offsets)
-                })
-            });
-        let facets: Vec<(f64, [DVec3; 3])> = facets.collect();
-        let before = facets.iter().map(|(weight, _)| weight).sum();
-        if !wanted.subdivide || velocity.rapidity() == 0.0 {
-            let prove = |((_, part), seen): (&(String, Part), &Mesh)| {
-                let mesh = part.mesh();
-                self.certificate(&draft.limits, mesh, mesh, seen, self.largest_gap(mesh))
-            };
-            return Foresight {
-                triangles: before,
-                before,
-                reachable: (draft.parts.iter().zip(&draft.seen).map(prove)).all(|c| c.complete),
-            };
-        }
-        let pieces = facets
-            .par_iter()
-            .map(|(weight, offsets)| weight * predicted_pieces(*offsets, &draft.limits.allowance));
-        let reachable = match self.aimed {
-            Tolerance::Angle(degrees) => {
-                let least = (1.0 - LEAST_FOR_GAP) * degrees.to_radians().sin();
-                facets.par_iter().all(|(_, offsets)| {
-                    let nearest = self.nearest(*offsets);
-                    let stretch = || local_stretch(&self.view, offsets.map(|o| o + observer));
-                    let taken = match self.deviation {
-                        0.0 => draft.limits.rounding,
-                        deviation => draft.limits.rounding + deviation * stretch(),
-                    };
-                    !draft.limits.allowance.is_at_its_least(&[nearest])
-                        && taken <= least * self.view.seen_distance(nearest)
-                })
-            }
-            _ => draft.limits.left >= LEAST_FOR_GAP * self.aimed_length,
-        };
-        Foresight {
-            // Added up in their order: the same sum for any number of threads.
-            triangles: pieces.collect::<Vec<f64>>().iter().sum(),
-            before,
-            reachable,
-        }
-    }
-
     /// What refinement starts from.
     pub(super) fn unrefined(mut self) -> Unrefined<'a> {
         let Draft { parts, limits, .. } = self.draft();
@@ -285,71 +213,6 @@ impl<'a> Plan<'a> {
             }
         };
         parts.into_iter().zip(seen).map(surface).collect()
-    }
-
-    /// Carries out the plans of one object for all steps with one mesh at rest, which is refined for one step after
-    /// the other; for each part its surfaces at all steps.
-    ///
-    /// What is within the tolerance at one step stays so when it is refined for another: the gap of a triangle is
-    /// how far a chord plane is above the convex `r`, and that of a piece of it is below that of the whole.
-    pub(super) fn carry_out_together(
-        mut plans: Vec<Self>,
-        wanted: Wanted,
-    ) -> Vec<Vec<Surface<'a>>> {
-        let shapes = plans
-            .iter()
-            .filter_map(|plan| Some((plan.shape.clone()?, plan.deviation)));
-        if let Some((shape, deviation)) = shapes.max_by_key(|(shape, _)| shape.triangle_count()) {
-            for plan in &mut plans {
-                (plan.shape, plan.deviation) = (Some(shape.clone()), deviation);
-            }
-        }
-        let Some(first) = plans.first_mut() else {
-            return vec![];
-        };
-        let before: Vec<(String, Part)> = first.draft().parts.into_owned();
-        let mut parts: Vec<(String, Part)> = before.clone();
-        let limits = Self::travelling(&mut plans, &parts);
-        for (plan, (_, limits)) in plans.iter().zip(&limits) {
-            if !wanted.subdivide || plan.view.relative_velocity().rapidity() == 0.0 {
-                continue;
-            }
-            for (_, part) in &mut parts {
-                let refined = refine(part.mesh(), plan.view.observer_rest(), &limits.allowance);
-                *part = part.with_mesh(refined.mesh);
-            }
-        }
-        let mut seen = Self::travelling(&mut plans, &parts);
-        let mut surfaces = vec![];
-        for (index, ((name, part), (_, before))) in parts.iter().zip(&before).enumerate() {
-            let steps = plans.iter().zip(&mut seen).map(|(plan, (seen, limits))| {
-                let (mesh, seen) = (part.mesh(), std::mem::take(&mut seen[index]));
-                let gap = plan.largest_gap(mesh);
-                Surface {
-                    name: name.clone(),
-                    part: Cow::Owned(part.clone()),
-                    certificate: plan.certificate(limits, before.mesh(), mesh, &seen, gap),
-                    seen,
-                }
-            });
-            surfaces.push(steps.collect());
-        }
-        surfaces
-    }
-
-    /// Parts as they are seen at each step, with what is allowed there when all steps share one offset in a file.
-    fn travelling(plans: &mut [Self], parts: &[(String, Part)]) -> Vec<(Vec<Mesh>, Limits)> {
-        let seen: Vec<Vec<Mesh>> = plans
-            .iter()
-            .map(|plan| seen_meshes(&plan.view, parts))
-            .collect();
-        let travel = bounds(seen.iter().flatten());
-        let limits = plans.iter_mut().zip(&seen).map(|(plan, seen)| {
-            plan.travel = travel;
-            plan.limits(parts, seen, 1.0)
-        });
-        let limits: Vec<Limits> = limits.collect();
-        seen.into_iter().zip(limits).collect()
     }
 
     /// The certificate of a mesh that was refined to another, with the largest gap `e`.

@@ -17,6 +17,7 @@ mod minimum;
 mod nearest;
 mod refine;
 mod sky;
+mod strip;
 
 pub(crate) use allowance::Allowance;
 pub(crate) use ceiling::gap_ceiling;

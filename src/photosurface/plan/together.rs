@@ -1,0 +1,75 @@
+//! One mesh for all steps, within the tolerance at each.
+
+use std::borrow::Cow;
+
+use super::{Limits, Plan, Surface, bounds, seen_meshes};
+use crate::mesh::{Mesh, Part};
+use crate::photosurface::Wanted;
+use crate::tessellate::refine;
+
+impl<'a> Plan<'a> {
+    /// Carries out the plans of one object for all steps with one mesh at rest, which is refined for one step after
+    /// the other; for each part its surfaces at all steps.
+    ///
+    /// What is within the tolerance at one step stays so when it is refined for another: the gap of a triangle is
+    /// how far a chord plane is above the convex `r`, and that of a piece of it is below that of the whole.
+    pub(in crate::photosurface) fn carry_out_together(
+        mut plans: Vec<Self>,
+        wanted: Wanted,
+    ) -> Vec<Vec<Surface<'a>>> {
+        let shapes = plans
+            .iter()
+            .filter_map(|plan| Some((plan.shape.clone()?, plan.deviation)));
+        if let Some((shape, deviation)) = shapes.max_by_key(|(shape, _)| shape.triangle_count()) {
+            for plan in &mut plans {
+                (plan.shape, plan.deviation) = (Some(shape.clone()), deviation);
+            }
+        }
+        let Some(first) = plans.first_mut() else {
+            return vec![];
+        };
+        let before: Vec<(String, Part)> = first.draft().parts.into_owned();
+        let mut parts: Vec<(String, Part)> = before.clone();
+        let limits = Self::travelling(&mut plans, &parts);
+        for (plan, (_, limits)) in plans.iter().zip(&limits) {
+            if !wanted.subdivide || plan.view.relative_velocity().rapidity() == 0.0 {
+                continue;
+            }
+            for (_, part) in &mut parts {
+                let refined = refine(part.mesh(), plan.view.observer_rest(), &limits.allowance);
+                *part = part.with_mesh(refined.mesh);
+            }
+        }
+        let mut seen = Self::travelling(&mut plans, &parts);
+        let mut surfaces = vec![];
+        for (index, ((name, part), (_, before))) in parts.iter().zip(&before).enumerate() {
+            let steps = plans.iter().zip(&mut seen).map(|(plan, (seen, limits))| {
+                let (mesh, seen) = (part.mesh(), std::mem::take(&mut seen[index]));
+                let gap = plan.largest_gap(mesh);
+                Surface {
+                    name: name.clone(),
+                    part: Cow::Owned(part.clone()),
+                    certificate: plan.certificate(limits, before.mesh(), mesh, &seen, gap),
+                    seen,
+                }
+            });
+            surfaces.push(steps.collect());
+        }
+        surfaces
+    }
+
+    /// Parts as they are seen at each step, with what is allowed there when all steps share one offset in a file.
+    fn travelling(plans: &mut [Self], parts: &[(String, Part)]) -> Vec<(Vec<Mesh>, Limits)> {
+        let seen: Vec<Vec<Mesh>> = plans
+            .iter()
+            .map(|plan| seen_meshes(&plan.view, parts))
+            .collect();
+        let travel = bounds(seen.iter().flatten());
+        let limits = plans.iter_mut().zip(&seen).map(|(plan, seen)| {
+            plan.travel = travel;
+            plan.limits(parts, seen, 1.0)
+        });
+        let limits: Vec<Limits> = limits.collect();
+        seen.into_iter().zip(limits).collect()
+    }
+}
