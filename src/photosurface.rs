@@ -24,7 +24,6 @@ pub use facts::{Facts, SceneFacts};
 pub use names::step_label;
 pub(crate) use plan::Unrefined;
 pub use seen::VertexData;
-use seen::condition;
 
 /// The observer's marker in files.
 const MARKER_NAME: &str = "observer";
@@ -280,16 +279,16 @@ impl Stage {
             proper_time: steps[step],
             relative_gamma: relative.gamma(),
             relative_rapidity: relative.rapidity(),
-            vertices: surface.seen.positions().len(),
-            triangles: surface.seen.triangles().len(),
-            condition: condition(view, surface.part.mesh()),
+            vertices: surface.seen.mesh.positions().len(),
+            triangles: surface.seen.mesh.triangles().len(),
+            condition: surface.seen.condition(view),
             certificate: surface.certificate,
         };
         Photosurface {
             facts,
             vertex_data: VertexData::new(view, surface.part.mesh(), wanted.attributes),
             material: surface.part.material.clone(),
-            mesh: surface.seen,
+            mesh: surface.seen.mesh,
         }
     }
 }

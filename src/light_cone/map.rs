@@ -15,6 +15,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::{DMat3, DVec3};
 
+use super::plain::{PlainMap, is_plain, size};
+use crate::spacetime::exact::Split;
 use crate::spacetime::{Velocity, exact, harmless_scale, heading, length, unit};
 
 /// The map from points at rest to the places where one moving observer sees them.
@@ -46,6 +48,8 @@ pub struct PhotosurfaceMap {
     squeeze: f64,
     gamma: f64,
     gamma_beta: f64,
+    /// For points that are neither tiny nor huge.
+    plain: Option<PlainMap>,
 }
 
 /// Offsets larger than this are divided by [`BACK`], lest their squares and sums overflow.
@@ -101,7 +105,14 @@ impl PhotosurfaceMap {
             squeeze: 1.0 / observer.stretch(),
             gamma: observer.gamma(),
             gamma_beta: observer.gamma_beta(),
+            plain: PlainMap::new(observer),
         }
+    }
+
+    /// The map without a branch, where the velocity allows that: the same results, bit for bit, for all points that are
+    /// neither tiny nor huge.
+    pub(super) fn plain(&self) -> Option<&PlainMap> {
+        self.plain.as_ref()
     }
 
     /// The place, in the observer's frame, where a point is seen: that of the emission event.
@@ -123,7 +134,10 @@ impl PhotosurfaceMap {
     ///
     /// Rau, Weiskopf, Ruder (1998), section 3.1.
     pub fn seen_position(&self, offset_rest: DVec3) -> DVec3 {
-        self.map(offset_rest, self.squeeze, self.stretch)
+        match &self.plain {
+            Some(plain) if is_plain(size(offset_rest)) => plain.see::<Split>(offset_rest).position,
+            _ => self.map(offset_rest, self.squeeze, self.stretch),
+        }
     }
 
     /// The point at rest, relative to the observer, that is seen at `seen`: the inverse of
@@ -277,6 +291,13 @@ impl PhotosurfaceMap {
     ///
     /// A zero normal stays zero.
     pub fn seen_normal(&self, offset_rest: DVec3, normal_rest: DVec3) -> DVec3 {
+        match &self.plain {
+            Some(plain) if is_plain(size(offset_rest)) && is_plain(size(normal_rest)) => {
+                let seen = plain.see::<Split>(offset_rest);
+                return plain.seen_normal(seen.toward_across, seen.doppler_factor, normal_rest);
+            }
+            _ => {}
+        }
         let n = self.direction;
         let (toward_across, doppler_factor) = self.toward_across(offset_rest);
         let Some(normal_rest) = heading(normal_rest) else {

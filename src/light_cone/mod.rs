@@ -1,9 +1,13 @@
 //! Where, when and in which colour a moving observer sees a point: the backward light cone.
 //!
-//! `map` is the mathematics of one observer and one rest frame; `view` places it in a scene where both move.
+//! `map` is the mathematics of one observer and one rest frame, `plain` the part of it that has no branches; `view`
+//! places it in a scene where both move, `batch` sees all points of a mesh at once.
 
+mod batch;
 mod map;
+mod plain;
 mod view;
 
+pub(crate) use batch::{Batch, Extremes};
 pub use map::PhotosurfaceMap;
 pub use view::View;

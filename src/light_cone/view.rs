@@ -24,6 +24,8 @@ pub struct View {
     /// How large the numbers are that this place is a sum of.
     place_size: f64,
     rest_to_observer: Lorentz,
+    /// The rotation that follows the boost.
+    turn: DMat3,
     map: PhotosurfaceMap,
 }
 
@@ -51,6 +53,7 @@ impl View {
             },
             place_size: size(origin) + size(traveled),
             rest_to_observer,
+            turn: DMat3::from_quat(rest_to_observer.rotation()),
             map: PhotosurfaceMap::new(&relative),
         }
     }
@@ -148,6 +151,15 @@ impl View {
         -self.map.emission_time(offset_rest)
     }
 
+    pub(super) fn map(&self) -> &PhotosurfaceMap {
+        &self.map
+    }
+
+    /// From the axes that the boost alone would give to those of the observer.
+    pub(super) fn turn(&self) -> DMat3 {
+        self.turn
+    }
+
     fn offset(&self, position_rest: DVec3) -> DVec3 {
         position_rest - self.observer_rest
     }
@@ -157,7 +169,7 @@ impl View {
             // What is beyond f64 has no direction left to turn.
             return DVec3::INFINITY;
         }
-        self.rest_to_observer.rotation() * vector
+        self.turn * vector
     }
 }
 

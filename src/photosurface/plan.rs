@@ -8,14 +8,14 @@ use std::borrow::Cow;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::seen::seen_mesh;
+use super::seen::Seen;
 use super::{Placed, Wanted};
-use crate::light_cone::View;
+use crate::light_cone::{Extremes, View};
 use crate::mesh::{Mesh, Part, Shape};
 use crate::scene::Tolerance;
 use crate::tessellate::{
-    Allowance, Bounds, Certificate, Counts, Precision, Singles, gap_ceiling, local_stretch,
-    minimum_triangles, nearest_point, refine, rounding_bound, triangle_gap,
+    Allowance, Bounds, Certificate, Counts, Precision, Singles, largest_gap, least_triangles,
+    local_stretch, nearest_point, refine, rounding_bound,
 };
 
 pub(super) use foresight::Foresight;
@@ -51,9 +51,6 @@ const LITTLE_ROUNDING: f64 = 1e-4;
 /// Round shapes of more facets are not made to predict what refinement will do to them.
 const FACETS_MADE_TO_PREDICT: u64 = 20_000;
 
-/// Triangles a thread takes at a time; always the same, so that results do not depend on the threads.
-const TRIANGLES_PER_JOB: usize = 4096;
-
 /// How one object is seen at one step, and what its tolerance allows.
 pub(super) struct Plan<'a> {
     view: View,
@@ -69,7 +66,7 @@ pub(super) struct Plan<'a> {
     /// Of facets from a curved surface, at rest; zero for what is flat.
     deviation: f64,
     /// The parts as they were placed, as seen.
-    seen: Vec<Mesh>,
+    seen: Vec<Seen>,
     precision: Precision,
     /// The box around all steps where they share one mesh in a file, as morph targets.
     travel: Option<(DVec3, DVec3)>,
@@ -79,7 +76,7 @@ pub(super) struct Plan<'a> {
 struct Draft<'a> {
     /// With names in files.
     parts: Cow<'a, [(String, Part)]>,
-    seen: Vec<Mesh>,
+    seen: Vec<Seen>,
     limits: Limits,
 }
 
@@ -111,7 +108,7 @@ pub(super) struct Surface<'a> {
     pub(super) name: String,
     /// At rest; that of the stage where nothing was refined.
     pub(super) part: Cow<'a, Part>,
-    pub(super) seen: Mesh,
+    pub(super) seen: Seen,
     pub(super) certificate: Certificate,
 }
 
@@ -122,7 +119,7 @@ impl<'a> Plan<'a> {
         tolerance: Tolerance,
         wanted: Wanted,
     ) -> Self {
-        let seen = seen_meshes(&view, &placed.parts);
+        let seen = seen_parts(&view, &placed.parts);
         let aimed = tolerance.times(placed.loosening);
         let mut plan = Self {
             view,
@@ -139,7 +136,7 @@ impl<'a> Plan<'a> {
         };
         if let Some(shaped) = &placed.shaped {
             let mesh = placed.parts[0].1.mesh();
-            let rounding = plan.rounding(mesh, &plan.seen[0], 0.0);
+            let rounding = plan.rounding(mesh, &plan.seen[0].extremes, 0.0);
             let target = CURVATURE_SHARE * plan.deviation_allowed(rounding, mesh);
             let shape = match wanted.subdivide {
                 true => shaped.shape.within(target / shaped.largest_scale),
@@ -174,7 +171,7 @@ impl<'a> Plan<'a> {
             limits,
         } = self.draft();
         let refining = wanted.subdivide && self.view.relative_velocity().rapidity() > 0.0;
-        let surface = |((name, part), seen): ((String, Cow<'a, Part>), Mesh)| {
+        let surface = |((name, part), seen): ((String, Cow<'a, Part>), Seen)| {
             if !refining {
                 let mesh = part.mesh();
                 let gap = self.largest_gap(mesh);
@@ -188,10 +185,10 @@ impl<'a> Plan<'a> {
             }
             let mesh = part.mesh();
             let refined = refine(mesh, self.view.observer_rest(), &limits.allowance);
-            let seen = if refined.mesh.positions().len() == seen.positions().len() {
+            let seen = if refined.mesh.positions().len() == mesh.positions().len() {
                 seen
             } else {
-                seen_mesh(&self.view, &refined.mesh)
+                Seen::new(&self.view, &refined.mesh)
             };
             Surface {
                 name,
@@ -212,7 +209,7 @@ impl<'a> Plan<'a> {
                 parts.map(|(name, part)| (name, Cow::Owned(part))).collect()
             }
         };
-        parts.into_iter().zip(seen).map(surface).collect()
+        parts.into_par_iter().zip(seen).map(surface).collect()
     }
 
     /// The certificate of a mesh that was refined to another, with the largest gap `e`.
@@ -221,25 +218,20 @@ impl<'a> Plan<'a> {
         limits: &Limits,
         mesh: &Mesh,
         refined: &Mesh,
-        seen: &Mesh,
+        seen: &Seen,
         gap: f64,
     ) -> Certificate {
         let observer = self.view.observer_rest();
-        let minimum = mesh.triangles().par_iter().map(|corners| {
-            let offsets = corners.map(|corner| mesh.positions()[corner as usize] - observer);
-            minimum_triangles(offsets, &limits.whole).max(1.0)
-        });
         let bounds = Bounds {
             gap: self.view.relative_velocity().gamma_beta() * gap * (1.0 + 4.0 * f64::EPSILON),
             deviation: self.deviation,
             curvature: limits.curvature,
-            rounding: self.rounding(refined, seen, 0.0),
+            rounding: self.rounding(refined, &seen.extremes, 0.0),
         };
         let counts = Counts {
             triangles_in: mesh.triangles().len(),
             triangles_out: refined.triangles().len(),
-            // Added up in their order: the same sum for any number of threads.
-            minimum_triangles: minimum.collect::<Vec<f64>>().iter().sum(),
+            minimum_triangles: least_triangles(mesh, observer, &limits.whole),
         };
         match self.tolerance {
             Tolerance::Angle(degrees) => {
@@ -255,7 +247,7 @@ impl<'a> Plan<'a> {
             return self.draft_as_placed(1.0);
         };
         let parts = shaped.parts_like(shape, &self.placed.parts);
-        let seen = seen_meshes(&self.view, &parts);
+        let seen = seen_parts(&self.view, &parts);
         Draft {
             limits: self.limits(&parts, &seen, 1.0),
             parts: parts.into(),
@@ -274,7 +266,7 @@ impl<'a> Plan<'a> {
     }
 
     /// What is allowed for these parts, each of whose facets stands for `each` smaller ones.
-    fn limits(&self, parts: &[(String, Part)], seen: &[Mesh], each: f64) -> Limits {
+    fn limits(&self, parts: &[(String, Part)], seen: &[Seen], each: f64) -> Limits {
         let mut curvature = 0.0;
         if self.deviation > 0.0 {
             let mesh = parts[0].1.mesh();
@@ -292,7 +284,7 @@ impl<'a> Plan<'a> {
                     }
                     false => 0.0,
                 };
-                self.rounding(part.mesh(), seen, bulge)
+                self.rounding(part.mesh(), &seen.extremes, bulge)
             });
             of_each.fold(0.0, f64::max)
         };
@@ -313,7 +305,7 @@ impl<'a> Plan<'a> {
 
     /// What rounding moves vertices by, also those that refinement will add where the photosurface is beyond the flat
     /// triangles between the vertices that there are, by at most `bulge`.
-    fn rounding(&self, mesh: &Mesh, seen: &Mesh, bulge: f64) -> f64 {
+    fn rounding(&self, mesh: &Mesh, seen: &Extremes, bulge: f64) -> f64 {
         let (center, radius) = ball(mesh);
         let stretch = self.view.stretch_bound(center, radius);
         let in_file = match (self.precision, self.travel.or(seen.bounds())) {
@@ -323,24 +315,11 @@ impl<'a> Plan<'a> {
             }),
             _ => None,
         };
-        rounding_bound(&self.view, mesh, seen, stretch, in_file) + 16.0 * f64::EPSILON * bulge
+        rounding_bound(&self.view, seen, stretch, in_file) + 16.0 * f64::EPSILON * bulge
     }
 
     fn largest_gap(&self, mesh: &Mesh) -> f64 {
-        let observer = self.view.observer_rest();
-        let chunks = mesh.triangles().par_chunks(TRIANGLES_PER_JOB);
-        let gaps = chunks.map(|chunk| {
-            chunk.iter().fold(0.0, |largest: f64, corners| {
-                let offsets = corners.map(|corner| mesh.positions()[corner as usize] - observer);
-                // Most are known to be smaller than one that was met before.
-                if gap_ceiling(offsets) <= largest {
-                    return largest;
-                }
-                let [a, b, c] = offsets;
-                largest.max(triangle_gap(a, b, c))
-            })
-        });
-        gaps.reduce(|| 0.0, f64::max)
+        largest_gap(mesh, self.view.observer_rest())
     }
 
     /// How far from a curved surface facets may be, at rest, if they were all that a tolerance is used for.
@@ -394,7 +373,7 @@ impl<'a> Plan<'a> {
         left: f64,
         curvature: f64,
         rounding: f64,
-        seen: &[Mesh],
+        seen: &[Seen],
     ) -> Allowance {
         let velocity = self.view.relative_velocity();
         let (gamma, gamma_beta) = (velocity.gamma(), velocity.gamma_beta());
@@ -426,25 +405,24 @@ impl<'a> Plan<'a> {
 }
 
 /// A tolerance as a length; an angle at the nearest vertex.
-fn length_of(tolerance: Tolerance, seen: &[Mesh]) -> f64 {
+fn length_of(tolerance: Tolerance, seen: &[Seen]) -> f64 {
     let diagonal = || bounds(seen).map_or(0.0, |(low, high)| low.distance(high));
     match tolerance {
         Tolerance::Absolute(length) => length,
         Tolerance::Relative(fraction) => fraction * diagonal(),
         Tolerance::Angle(degrees) => {
-            let distances = seen
-                .iter()
-                .flat_map(Mesh::positions)
-                .map(|place| place.length());
+            let distances = seen.iter().map(|seen| seen.extremes.nearest);
             let nearest = distances.fold(f64::INFINITY, f64::min);
             degrees.to_radians().sin() * nearest.max(NEAREST * diagonal())
         }
     }
 }
 
-fn seen_meshes(view: &View, parts: &[(String, Part)]) -> Vec<Mesh> {
-    let meshes = parts.iter().map(|(_, part)| part.mesh());
-    meshes.map(|mesh| seen_mesh(view, mesh)).collect()
+fn seen_parts(view: &View, parts: &[(String, Part)]) -> Vec<Seen> {
+    let parts = parts.par_iter();
+    parts
+        .map(|(_, part)| Seen::new(view, part.mesh()))
+        .collect()
 }
 
 /// One of `parts` equal triangles that a triangle is made of, in its middle.
@@ -453,9 +431,9 @@ fn shrunk(corners: [DVec3; 3], parts: f64) -> [DVec3; 3] {
     corners.map(|corner| middle + (corner - middle) / parts.sqrt())
 }
 
-/// The box around meshes.
-fn bounds<'m>(meshes: impl IntoIterator<Item = &'m Mesh>) -> Option<(DVec3, DVec3)> {
-    let boxes = meshes.into_iter().filter_map(Mesh::bounds);
+/// The box around what is seen.
+fn bounds<'s>(seen: impl IntoIterator<Item = &'s Seen>) -> Option<(DVec3, DVec3)> {
+    let boxes = seen.into_iter().filter_map(|seen| seen.extremes.bounds());
     boxes.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
 }
 

@@ -3,7 +3,7 @@
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
-use crate::light_cone::View;
+use crate::light_cone::{Batch, Extremes, View};
 use crate::mesh::Mesh;
 use crate::scene::Attributes;
 
@@ -37,35 +37,66 @@ impl VertexData {
     }
 }
 
-/// The mesh as it is seen: every vertex mapped, with its normal and its tangent.
-pub(super) fn seen_mesh(view: &View, rest: &Mesh) -> Mesh {
-    let jobs = || rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
-    let positions = jobs()
-        .map(|&position| view.seen_position(position))
-        .collect();
-    let normals = rest.normals().map(|normals| {
-        let pairs = jobs().zip(normals);
-        pairs
-            .map(|(&position, &normal)| view.seen_normal(position, normal))
-            .collect()
-    });
-    let tangents = rest.tangents().map(|tangents| {
-        let pairs = jobs().zip(tangents);
-        // The map never turns orientation round: the bitangent keeps its sign.
-        let seen = |(position, tangent): (&_, &DVec4)| {
-            view.seen_tangent(*position, tangent.truncate())
-                .extend(tangent.w)
-        };
-        pairs.map(seen).collect()
-    });
-    rest.with_geometry(positions, normals, tangents)
+/// A mesh as it is seen, and what all its vertices have in common.
+#[derive(Clone, Debug)]
+pub(super) struct Seen {
+    pub(super) mesh: Mesh,
+    pub(super) extremes: Extremes,
 }
 
-/// How many times, at most, a small error of a vertex is magnified.
-pub(super) fn condition(view: &View, rest: &Mesh) -> f64 {
-    let jobs = rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
-    let forwardness = jobs
-        .map(|&position| view.forwardness(position))
-        .reduce(|| 0.0, f64::max);
-    view.stretch_toward(forwardness)
+impl Seen {
+    /// Every vertex of a mesh at rest mapped, with its normal and its tangent.
+    pub(super) fn new(view: &View, rest: &Mesh) -> Self {
+        let positions_rest = rest.positions();
+        let mut positions = vec![DVec3::ZERO; positions_rest.len()];
+        let jobs = positions_rest
+            .par_chunks(VERTICES_PER_JOB)
+            .zip(positions.par_chunks_mut(VERTICES_PER_JOB));
+        let (normals, extremes) = match rest.normals() {
+            Some(normals_rest) => {
+                let mut normals = vec![DVec3::ZERO; normals_rest.len()];
+                let pairs = normals_rest
+                    .par_chunks(VERTICES_PER_JOB)
+                    .zip(normals.par_chunks_mut(VERTICES_PER_JOB));
+                let extremes = jobs.zip(pairs).map(|((rest, seen), normals)| {
+                    let normals = Some(normals);
+                    view.see(Batch {
+                        rest,
+                        seen,
+                        normals,
+                    })
+                });
+                let extremes = extremes.reduce(|| Extremes::NONE, Extremes::and);
+                (Some(normals), extremes)
+            }
+            None => {
+                let extremes = jobs.map(|(rest, seen)| {
+                    view.see(Batch {
+                        rest,
+                        seen,
+                        normals: None,
+                    })
+                });
+                (None, extremes.reduce(|| Extremes::NONE, Extremes::and))
+            }
+        };
+        let tangents = rest.tangents().map(|tangents| {
+            let jobs = positions_rest.par_iter().with_min_len(VERTICES_PER_JOB);
+            // The map never turns orientation round: the bitangent keeps its sign.
+            let seen = |(position, tangent): (&_, &DVec4)| {
+                view.seen_tangent(*position, tangent.truncate())
+                    .extend(tangent.w)
+            };
+            jobs.zip(tangents).map(seen).collect()
+        });
+        Self {
+            mesh: rest.with_geometry(positions, normals, tangents),
+            extremes,
+        }
+    }
+
+    /// How many times, at most, a small error of a vertex is magnified.
+    pub(super) fn condition(&self, view: &View) -> f64 {
+        view.stretch_toward(self.extremes.forwardness)
+    }
 }

@@ -1,8 +1,7 @@
 //! Sums and products that lose nothing: what is rounded away is kept as a second number.
 //!
 //! Sources: T. J. Dekker, *A floating-point technique for extending the available precision*, Numer. Math. 18
-//! (1971), 224; D. E. Knuth, *The Art of Computer Programming* 2, section 4.2.2. Without `f64::mul_add`, which is
-//! a slow call where the processor has no such instruction.
+//! (1971), 224; D. E. Knuth, *The Art of Computer Programming* 2, section 4.2.2.
 //!
 //! For numbers up to about `1e150`, whose products and halves neither overflow nor lose digits that count.
 
@@ -11,22 +10,50 @@ use glam::DVec3;
 /// `2^27 + 1`: splits a number into halves of 26 bits.
 const SPLITTER: f64 = 134_217_729.0;
 
+/// How what a product rounds away is found: the same number either way.
+pub(crate) trait Product {
+    /// `a b` rounded, and what was rounded away.
+    fn two_product(a: f64, b: f64) -> (f64, f64);
+}
+
+/// By halves of 26 bits: on any processor.
+pub(crate) struct Split;
+
+/// By `f64::mul_add`: a slow call where the processor has no such instruction.
+pub(crate) struct Fused;
+
+impl Product for Split {
+    #[inline(always)]
+    fn two_product(a: f64, b: f64) -> (f64, f64) {
+        let product = a * b;
+        let (a_high, a_low) = split(a);
+        let (b_high, b_low) = split(b);
+        let error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+        (product, error)
+    }
+}
+
+impl Product for Fused {
+    #[inline(always)]
+    fn two_product(a: f64, b: f64) -> (f64, f64) {
+        let product = a * b;
+        (product, a.mul_add(b, -product))
+    }
+}
+
 /// `a + b` rounded, and what was rounded away.
+#[inline(always)]
 pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let part_of_b = sum - a;
     (sum, (a - (sum - part_of_b)) + (b - part_of_b))
 }
 
-/// `a b` rounded, and what was rounded away.
-pub(crate) fn two_product(a: f64, b: f64) -> (f64, f64) {
-    let product = a * b;
-    let (a_high, a_low) = split(a);
-    let (b_high, b_low) = split(b);
-    let error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
-    (product, error)
+fn two_product(a: f64, b: f64) -> (f64, f64) {
+    Split::two_product(a, b)
 }
 
+#[inline(always)]
 fn split(number: f64) -> (f64, f64) {
     let scaled = SPLITTER * number;
     let high = scaled - (scaled - number);
@@ -35,17 +62,24 @@ fn split(number: f64) -> (f64, f64) {
 
 /// `a x b`, each component right to about one unit in its last place, however much of it cancels.
 pub(crate) fn cross(a: DVec3, b: DVec3) -> DVec3 {
-    DVec3::new(
-        difference_of_products(a.y, b.z, a.z, b.y),
-        difference_of_products(a.z, b.x, a.x, b.z),
-        difference_of_products(a.x, b.y, a.y, b.x),
-    )
+    cross_by::<Split>(a, b)
+}
+
+/// [`cross`] with products of one kind.
+#[inline(always)]
+pub(crate) fn cross_by<P: Product>(a: DVec3, b: DVec3) -> DVec3 {
+    DVec3 {
+        x: difference_of_products::<P>(a.y, b.z, a.z, b.y),
+        y: difference_of_products::<P>(a.z, b.x, a.x, b.z),
+        z: difference_of_products::<P>(a.x, b.y, a.y, b.x),
+    }
 }
 
 /// `a b - c d`
-fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
-    let (first, first_error) = two_product(a, b);
-    let (second, second_error) = two_product(c, d);
+#[inline(always)]
+fn difference_of_products<P: Product>(a: f64, b: f64, c: f64, d: f64) -> f64 {
+    let (first, first_error) = P::two_product(a, b);
+    let (second, second_error) = P::two_product(c, d);
     let (difference, rounded) = two_sum(first, -second);
     let (errors, errors_rounded) = two_sum(first_error, -second_error);
     // The errors may all but cancel what is left of the products.
@@ -83,7 +117,9 @@ mod tests {
     #[test]
     fn nothing_is_lost() {
         let (a, b) = (1.0 + f64::EPSILON, 1.0 - f64::EPSILON);
-        assert_eq!(two_product(a, b), (1.0, -f64::EPSILON * f64::EPSILON));
+        let expected = (1.0, -f64::EPSILON * f64::EPSILON);
+        assert_eq!(Split::two_product(a, b), expected);
+        assert_eq!(Fused::two_product(a, b), expected);
         assert_eq!(two_sum(1e16, 0.75), (1e16, 0.75));
         assert_eq!(two_sum(0.75, 1e16), (1e16, 0.75));
     }

@@ -1,30 +1,84 @@
-//! A bound of a triangle's gap that costs next to nothing, to pass over most of many triangles.
+//! Bounds of a triangle's gap and of the triangles it needs that cost next to nothing, to pass over most of many
+//! triangles.
 
 use glam::DVec3;
 
 /// Squares of distances beyond this may overflow or vanish in what follows.
 const PLAIN: std::ops::RangeInclusive<f64> = 1e-200..=1e200;
 
-/// An upper bound of the gap of the triangle with corners `a`, `b`, `c` relative to the observer; infinity where the
-/// triangle is not small against its distance.
+/// Of squares of sides: where the shortest is less than this part of the longest, the largest angle is not known well.
+const NEEDLE: f64 = 1e-6;
+
+/// Room for the roundings: of a dozen operations, and of the angle of what is all but a needle, of a thousand epsilon.
+const UP: f64 = 1.0 + 1e-11;
+
+/// What is known at once of a triangle that is small against its distance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ceilings {
+    /// Never below its gap.
+    pub(crate) gap: f64,
+    /// Never below the integral of `2 h / r^2` over it, `h` the distance of its plane.
+    pub(crate) area: f64,
+}
+
+impl Ceilings {
+    /// Of a triangle that is not small against its distance.
+    pub(crate) const UNKNOWN: Self = Self {
+        gap: f64::INFINITY,
+        area: f64::INFINITY,
+    };
+}
+
+/// Both bounds of the triangle with corners `a`, `b`, `c` relative to the observer; infinity where the triangle is not
+/// small against its distance. Without a branch.
 ///
 /// # Derivation
 ///
 /// In the triangle's plane no second derivative of the distance `r` is larger than `1/r`. With `m` its largest there and
 /// all corners within `R` of a point `o`, `u = m |x - o|^2 / 2` minus `r` is convex, and so above itself when it is
-/// interpolated between the corners; what interpolating does to `u` alone is at most `m R^2 / 2`. By Jung's theorem
-/// `R^2 <= L^2 / 3`, `L` the longest edge, and nothing in the triangle is nearer than `|a| - L`.
-pub(crate) fn gap_ceiling([a, b, c]: [DVec3; 3]) -> f64 {
+/// interpolated between the corners; what interpolating does to `u` alone is at most `m R^2 / 2`. The smallest circle
+/// has `R = L / 2`, `L` the longest side, where the angle `C` across is obtuse, else `R = L / (2 sin C)`; in any
+/// triangle `R^2 <= L^2 / 3` (Jung). Nothing in the triangle is nearer than `|a| - L`.
+#[inline(always)]
+pub(crate) fn ceilings([a, b, c]: [DVec3; 3]) -> Ceilings {
     let distance_squared = a.length_squared();
-    let squares = [b - a, c - b, a - c].map(DVec3::length_squared);
-    let longest_squared = squares[0].max(squares[1]).max(squares[2]);
+    let (ab, ac) = (b - a, c - a);
+    let [p, q, s] = [ab, ac, c - b].map(DVec3::length_squared);
+    let longest = larger(larger(p, q), s);
+    let shortest = -larger(larger(-p, -q), -s);
+    let middle = larger(larger(smaller(p, q), smaller(q, s)), smaller(p, s));
+    // 2 |v| |w| cos C of the two shorter sides, squared over 4 of their squares: cos^2 C, from 0 to 1/4.
+    let twice_product = larger(shortest + middle - longest, 0.0);
+    let four_sines = 4.0 - twice_product * twice_product / (shortest * middle);
+    let four_sines = if shortest >= NEEDLE * longest {
+        larger(four_sines, 3.0)
+    } else {
+        3.0
+    };
+    let nearest = distance_squared.sqrt() - longest.sqrt();
+    let twice_volume = a.dot(ab.cross(ac)).abs();
+    // The volume's roundings are of its terms.
+    let rounded = 64.0 * f64::EPSILON * distance_squared.sqrt() * longest;
     // Written so that NaN is refused.
-    if !(PLAIN.contains(&distance_squared) && 4.0 * longest_squared <= distance_squared) {
-        return f64::INFINITY;
+    let known = PLAIN.contains(&distance_squared) && 4.0 * longest <= distance_squared;
+    if known {
+        Ceilings {
+            gap: longest / (2.0 * four_sines * nearest) * UP,
+            area: (twice_volume + rounded) / (nearest * nearest) * UP,
+        }
+    } else {
+        Ceilings::UNKNOWN
     }
-    let nearest = distance_squared.sqrt() - longest_squared.sqrt();
-    // A dozen roundings, of which the difference at most doubles the relative size.
-    longest_squared / (6.0 * nearest) * (1.0 + 32.0 * f64::EPSILON)
+}
+
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 #[cfg(test)]
@@ -49,7 +103,7 @@ mod tests {
             };
             let corners = [corner(0.0), corner(0.13), corner(0.29)];
             let (ceiling, gap) = (
-                gap_ceiling(corners),
+                ceilings(corners).gap,
                 triangle_gap(corners[0], corners[1], corners[2]),
             );
             assert!(ceiling >= gap, "{corners:?}: {ceiling} {gap}");
@@ -67,8 +121,9 @@ mod tests {
             [DVec3::NAN; 3],
             [DVec3::X * 1e160; 3],
         ] {
-            assert_eq!(gap_ceiling(corners), f64::INFINITY, "{corners:?}");
+            assert_eq!(ceilings(corners).gap, f64::INFINITY, "{corners:?}");
         }
-        assert_eq!(gap_ceiling([DVec3::X; 3]), 0.0);
+        // A point has no angles.
+        assert_eq!(ceilings([DVec3::X; 3]).gap, 0.0);
     }
 }

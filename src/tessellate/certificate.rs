@@ -5,9 +5,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::triangle_gap;
-use crate::light_cone::View;
+use crate::light_cone::{Extremes, View};
 use crate::mesh::Mesh;
-use crate::spacetime::length;
 
 /// Room for the few roundings of a product of bounds.
 const UP: f64 = 1.0 + 8.0 * f64::EPSILON;
@@ -64,19 +63,12 @@ pub enum Precision {
 /// rounded; morph targets add a difference, at most twice as large, and so round it three times.
 pub(crate) fn rounding_bound(
     view: &View,
-    rest: &Mesh,
-    seen: &Mesh,
+    seen: &Extremes,
     stretch: f64,
     in_file: Option<Singles>,
 ) -> f64 {
-    let largest = |points: &[DVec3]| {
-        points
-            .iter()
-            .fold(0.0f64, |largest, &point| largest.max(length(point)))
-    };
-    let size_rest = largest(rest.positions()) + view.place_size();
-    let size_seen = largest(seen.positions());
-    let double = f64::EPSILON * (16.0 * stretch * size_rest + 16.0 * size_seen);
+    let size_rest = seen.farthest_rest + view.place_size();
+    let double = f64::EPSILON * (16.0 * stretch * size_rest + 16.0 * seen.farthest);
     let Some(Singles { extent, roundings }) = in_file else {
         return double;
     };

@@ -8,7 +8,7 @@ use super::{Allowance, triangle_gap};
 
 /// `1.5 sqrt(3)`: an equilateral triangle whose middle has the gap `e` has the area `1.5 sqrt(3) e` in the metric
 /// in which gaps are measured.
-const AREA_OF_GAP: f64 = 2.598_076_211_353_316;
+pub(super) const AREA_OF_GAP: f64 = 2.598_076_211_353_316;
 
 /// Where a triangle is smaller than this against its distance, one quadrature is enough.
 const SMALL: f64 = 0.5;

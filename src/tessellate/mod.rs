@@ -18,12 +18,14 @@ mod nearest;
 mod refine;
 mod sky;
 mod strip;
+mod survey;
 
 pub(crate) use allowance::Allowance;
-pub(crate) use ceiling::gap_ceiling;
 pub(crate) use certificate::{Bounds, Counts, Singles, local_stretch, rounding_bound};
 pub use certificate::{Certificate, Precision};
 pub use gap::{edge_gap, triangle_gap, triangle_gap_place};
-pub(crate) use minimum::{minimum_triangles, predicted_pieces};
+use minimum::minimum_triangles;
+pub(crate) use minimum::predicted_pieces;
 pub(crate) use nearest::nearest_point;
 pub(crate) use refine::refine;
+pub(crate) use survey::{largest_gap, least_triangles};

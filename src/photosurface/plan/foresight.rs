@@ -4,8 +4,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{FACETS_MADE_TO_PREDICT, LEAST_FOR_GAP, Plan, shrunk};
-use crate::mesh::{Mesh, Part, Shape};
+use crate::mesh::{Part, Shape};
 use crate::photosurface::Wanted;
+use crate::photosurface::seen::Seen;
 use crate::scene::Tolerance;
 use crate::tessellate::{local_stretch, predicted_pieces};
 
@@ -50,7 +51,7 @@ impl Plan<'_> {
         let facets: Vec<(f64, [DVec3; 3])> = facets.collect();
         let before = facets.iter().map(|(weight, _)| weight).sum();
         if !wanted.subdivide || velocity.rapidity() == 0.0 {
-            let prove = |((_, part), seen): (&(String, Part), &Mesh)| {
+            let prove = |((_, part), seen): (&(String, Part), &Seen)| {
                 let mesh = part.mesh();
                 self.certificate(&draft.limits, mesh, mesh, seen, self.largest_gap(mesh))
             };

@@ -2,9 +2,10 @@
 
 use std::borrow::Cow;
 
-use super::{Limits, Plan, Surface, bounds, seen_meshes};
-use crate::mesh::{Mesh, Part};
+use super::{Limits, Plan, Surface, bounds, seen_parts};
+use crate::mesh::Part;
 use crate::photosurface::Wanted;
+use crate::photosurface::seen::Seen;
 use crate::tessellate::refine;
 
 impl<'a> Plan<'a> {
@@ -44,7 +45,7 @@ impl<'a> Plan<'a> {
         let mut surfaces = vec![];
         for (index, ((name, part), (_, before))) in parts.iter().zip(&before).enumerate() {
             let steps = plans.iter().zip(&mut seen).map(|(plan, (seen, limits))| {
-                let (mesh, seen) = (part.mesh(), std::mem::take(&mut seen[index]));
+                let (mesh, seen) = (part.mesh(), seen[index].clone());
                 let gap = plan.largest_gap(mesh);
                 Surface {
                     name: name.clone(),
@@ -59,10 +60,10 @@ impl<'a> Plan<'a> {
     }
 
     /// Parts as they are seen at each step, with what is allowed there when all steps share one offset in a file.
-    fn travelling(plans: &mut [Self], parts: &[(String, Part)]) -> Vec<(Vec<Mesh>, Limits)> {
-        let seen: Vec<Vec<Mesh>> = plans
+    fn travelling(plans: &mut [Self], parts: &[(String, Part)]) -> Vec<(Vec<Seen>, Limits)> {
+        let seen: Vec<Vec<Seen>> = plans
             .iter()
-            .map(|plan| seen_meshes(&plan.view, parts))
+            .map(|plan| seen_parts(&plan.view, parts))
             .collect();
         let travel = bounds(seen.iter().flatten());
         let limits = plans.iter_mut().zip(&seen).map(|(plan, seen)| {

@@ -1,0 +1,500 @@
+//! Many points seen at once, several in one instruction where the processor has such.
+//!
+//! `pulp` finds out what there is when the program runs; the loops are written so that the compiler makes vectors of
+//! them. A block of points that are all neither tiny nor huge goes through the map without a branch, any other one
+//! through the map for single points, point by point: the results are the same, bit for bit, either way.
+
+use glam::DVec3;
+use pulp::{Arch, NullaryFnOnce};
+
+use super::View;
+use super::plain::{PlainMap, is_plain, size};
+use crate::spacetime::exact::{Fused, Product, Split};
+use crate::spacetime::length;
+
+/// Points that are taken at a time: enough for the longest vectors, few enough for the nearest cache.
+const BLOCK: usize = 64;
+
+/// What all points of a mesh have in common, at rest and as seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Extremes {
+    /// The box around all places where they are seen; upside down where there are none.
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
+    /// The distances at which the nearest and the farthest are seen.
+    pub(crate) nearest: f64,
+    pub(crate) farthest: f64,
+    /// The largest distance from the origin of the rest frame.
+    pub(crate) farthest_rest: f64,
+    /// The largest: see [`View::stretch_toward`].
+    pub(crate) forwardness: f64,
+}
+
+impl Extremes {
+    /// Of no points.
+    pub(crate) const NONE: Self = Self {
+        low: DVec3::INFINITY,
+        high: DVec3::NEG_INFINITY,
+        nearest: f64::INFINITY,
+        farthest: 0.0,
+        farthest_rest: 0.0,
+        forwardness: 0.0,
+    };
+
+    /// Of the points of both.
+    #[must_use]
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+            nearest: self.nearest.min(other.nearest),
+            farthest: self.farthest.max(other.farthest),
+            farthest_rest: self.farthest_rest.max(other.farthest_rest),
+            forwardness: self.forwardness.max(other.forwardness),
+        }
+    }
+
+    /// The box around what is seen; `None` where nothing is.
+    pub(crate) fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        // Of places beyond f64 there is one, too.
+        (self.nearest <= self.farthest || self.farthest > 0.0).then_some((self.low, self.high))
+    }
+}
+
+/// Points at rest to be seen, and where to put what is seen of them.
+pub(crate) struct Batch<'a> {
+    pub(crate) rest: &'a [DVec3],
+    /// As many.
+    pub(crate) seen: &'a mut [DVec3],
+    /// Normals at rest, each of unit length or zero, and as seen.
+    pub(crate) normals: Option<(&'a [DVec3], &'a mut [DVec3])>,
+}
+
+impl View {
+    /// Sees all points of a batch: as [`View::seen_position`] and [`View::seen_normal`] do each, bit for bit if no
+    /// coordinate is so small, other than zero, that digits of its products vanish (below `1e-250`).
+    ///
+    /// # Panics
+    ///
+    /// If the parts of the batch are not of one length.
+    pub(crate) fn see(&self, batch: Batch<'_>) -> Extremes {
+        assert_eq!(batch.rest.len(), batch.seen.len(), "a place for each point");
+        if let Some((rest, seen)) = &batch.normals {
+            let lengths = (rest.len(), seen.len());
+            assert_eq!(
+                lengths,
+                (batch.rest.len(), batch.rest.len()),
+                "one normal for each point"
+            );
+        }
+        let Some(plain) = self.map().plain() else {
+            return self.see_one_by_one(batch);
+        };
+        let arch = Arch::new();
+        let vectors = Vectors {
+            view: self,
+            plain,
+            batch,
+        };
+        match arch {
+            // Without instructions of its own a fused product is a call.
+            Arch::Scalar => vectors.run::<Split>(),
+            _ => arch.dispatch(vectors),
+        }
+    }
+
+    fn see_one_by_one(&self, batch: Batch<'_>) -> Extremes {
+        let mut extremes = Extremes::NONE;
+        for (&rest, seen) in batch.rest.iter().zip(batch.seen) {
+            *seen = self.seen_position(rest);
+            let distance = length(*seen);
+            extremes = extremes.and(Extremes {
+                low: *seen,
+                high: *seen,
+                nearest: distance,
+                farthest: distance,
+                farthest_rest: length(rest),
+                forwardness: self.forwardness(rest),
+            });
+        }
+        if let Some((normals, seen)) = batch.normals {
+            for ((&rest, &normal), seen) in batch.rest.iter().zip(normals).zip(seen) {
+                *seen = self.seen_normal(rest, normal);
+            }
+        }
+        extremes
+    }
+}
+
+struct Vectors<'a> {
+    view: &'a View,
+    plain: &'a PlainMap,
+    batch: Batch<'a>,
+}
+
+impl NullaryFnOnce for Vectors<'_> {
+    type Output = Extremes;
+
+    #[inline(always)]
+    fn call(self) -> Extremes {
+        self.run::<Fused>()
+    }
+}
+
+impl Vectors<'_> {
+    #[inline(always)]
+    fn run<P: Product>(self) -> Extremes {
+        let Batch {
+            rest,
+            seen,
+            normals,
+        } = self.batch;
+        let (normals_rest, normals_seen) = normals.unzip();
+        let mut normals_rest = normals_rest.unwrap_or_default().chunks(BLOCK);
+        let mut normals_seen = normals_seen.unwrap_or_default().chunks_mut(BLOCK);
+        let mut of_blocks = Accumulated::new();
+        let mut of_others = Extremes::NONE;
+        for (rest, seen) in rest.chunks(BLOCK).zip(seen.chunks_mut(BLOCK)) {
+            let normals = normals_rest.next().zip(normals_seen.next());
+            let block = Block::seen::<P>(self.view, self.plain, rest);
+            if !block.is_plain() {
+                let batch = Batch {
+                    rest,
+                    seen,
+                    normals,
+                };
+                of_others = of_others.and(self.view.see_one_by_one(batch));
+                continue;
+            }
+            of_blocks.add(&block);
+            block.position.store(seen);
+            if let Some((rest, seen)) = normals {
+                block.normals(self.view, self.plain, rest).store(seen);
+            }
+        }
+        of_blocks.extremes().and(of_others)
+    }
+}
+
+/// A number for each point of a block.
+type Numbers = [f64; BLOCK];
+
+/// A vector for each point of a block, component by component.
+struct Columns {
+    x: Numbers,
+    y: Numbers,
+    z: Numbers,
+}
+
+impl Columns {
+    const ZERO: Self = Self {
+        x: [0.0; BLOCK],
+        y: [0.0; BLOCK],
+        z: [0.0; BLOCK],
+    };
+
+    /// The last vector again where there are too few: it changes nothing that all have in common.
+    #[inline(always)]
+    fn load(vectors: &[DVec3]) -> Self {
+        let mut columns = Self::ZERO;
+        let last = vectors.last().copied().unwrap_or_default();
+        for index in 0..BLOCK {
+            columns.set(index, *vectors.get(index).unwrap_or(&last));
+        }
+        columns
+    }
+
+    #[inline(always)]
+    fn store(&self, vectors: &mut [DVec3]) {
+        for (index, vector) in vectors.iter_mut().enumerate().take(BLOCK) {
+            *vector = self.get(index);
+        }
+    }
+
+    #[inline(always)]
+    fn get(&self, index: usize) -> DVec3 {
+        DVec3 {
+            x: self.x[index],
+            y: self.y[index],
+            z: self.z[index],
+        }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, index: usize, vector: DVec3) {
+        self.x[index] = vector.x;
+        self.y[index] = vector.y;
+        self.z[index] = vector.z;
+    }
+}
+
+/// How the points of a block are seen.
+struct Block {
+    size: Numbers,
+    square_rest: Numbers,
+    position: Columns,
+    distance: Numbers,
+    forwardness_squared: Numbers,
+    toward_across: Columns,
+    doppler_factor: Numbers,
+}
+
+impl Block {
+    #[inline(always)]
+    fn seen<P: Product>(view: &View, plain: &PlainMap, rest: &[DVec3]) -> Self {
+        let (observer, turn) = (view.observer_rest(), view.turn());
+        let rest = Columns::load(rest);
+        let mut block = Self {
+            size: [0.0; BLOCK],
+            square_rest: [0.0; BLOCK],
+            position: Columns::ZERO,
+            distance: [0.0; BLOCK],
+            forwardness_squared: [0.0; BLOCK],
+            toward_across: Columns::ZERO,
+            doppler_factor: [0.0; BLOCK],
+        };
+        for index in 0..BLOCK {
+            let rest = rest.get(index);
+            let offset = rest - observer;
+            let sighting = plain.see::<P>(offset);
+            block.size[index] = size(offset);
+            block.square_rest[index] = rest.length_squared();
+            block.position.set(index, turn * sighting.position);
+            block.distance[index] = sighting.distance;
+            block.forwardness_squared[index] = sighting.forwardness_squared;
+            block.toward_across.set(index, sighting.toward_across);
+            block.doppler_factor[index] = sighting.doppler_factor;
+        }
+        block
+    }
+
+    #[inline(always)]
+    fn is_plain(&self) -> bool {
+        let mut others = 0;
+        for index in 0..BLOCK {
+            others += u64::from(!is_plain(self.size[index]));
+        }
+        others == 0
+    }
+
+    #[inline(always)]
+    fn normals(&self, view: &View, plain: &PlainMap, rest: &[DVec3]) -> Columns {
+        let turn = view.turn();
+        let mut columns = Columns::load(rest);
+        for index in 0..BLOCK {
+            let (toward_across, doppler_factor) =
+                (self.toward_across.get(index), self.doppler_factor[index]);
+            let normal = plain.seen_normal(toward_across, doppler_factor, columns.get(index));
+            columns.set(index, turn * normal);
+        }
+        columns
+    }
+}
+
+/// The extremes of blocks, of each place in them by itself.
+struct Accumulated {
+    low: Columns,
+    high: Columns,
+    nearest: Numbers,
+    farthest: Numbers,
+    square_rest: Numbers,
+    forwardness_squared: Numbers,
+}
+
+impl Accumulated {
+    fn new() -> Self {
+        let all = |number: f64| [number; BLOCK];
+        let columns = |number: f64| Columns {
+            x: all(number),
+            y: all(number),
+            z: all(number),
+        };
+        Self {
+            low: columns(f64::INFINITY),
+            high: columns(f64::NEG_INFINITY),
+            nearest: all(f64::INFINITY),
+            farthest: all(0.0),
+            square_rest: all(0.0),
+            forwardness_squared: all(0.0),
+        }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, block: &Block) {
+        lower(&mut self.low.x, &block.position.x);
+        lower(&mut self.low.y, &block.position.y);
+        lower(&mut self.low.z, &block.position.z);
+        raise(&mut self.high.x, &block.position.x);
+        raise(&mut self.high.y, &block.position.y);
+        raise(&mut self.high.z, &block.position.z);
+        lower(&mut self.nearest, &block.distance);
+        raise(&mut self.farthest, &block.distance);
+        raise(&mut self.square_rest, &block.square_rest);
+        raise(&mut self.forwardness_squared, &block.forwardness_squared);
+    }
+
+    fn extremes(&self) -> Extremes {
+        let least = |numbers: &Numbers| numbers.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = |numbers: &Numbers| numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let each = |columns: &Columns, of: &dyn Fn(&Numbers) -> f64| {
+            DVec3::new(of(&columns.x), of(&columns.y), of(&columns.z))
+        };
+        Extremes {
+            low: each(&self.low, &least),
+            high: each(&self.high, &most),
+            nearest: least(&self.nearest),
+            farthest: most(&self.farthest),
+            farthest_rest: most(&self.square_rest).sqrt(),
+            forwardness: most(&self.forwardness_squared).sqrt(),
+        }
+    }
+}
+
+#[inline(always)]
+fn lower(least: &mut Numbers, numbers: &Numbers) {
+    for index in 0..BLOCK {
+        let (old, new) = (least[index], numbers[index]);
+        least[index] = if new < old { new } else { old };
+    }
+}
+
+#[inline(always)]
+fn raise(most: &mut Numbers, numbers: &Numbers) {
+    for index in 0..BLOCK {
+        let (old, new) = (most[index], numbers[index]);
+        most[index] = if new > old { new } else { old };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spacetime::{Event, Velocity, WorldLine};
+
+    fn view(rapidity: f64, place: DVec3) -> View {
+        let line = |position, velocity| WorldLine {
+            origin: Event::new(0.0, position),
+            velocity,
+        };
+        let velocity = Velocity::from_rapidity(rapidity, DVec3::new(1.0, 2.0, -3.0)).unwrap();
+        let object = Velocity::from_beta(0.3, DVec3::new(-1.0, 0.5, 0.2)).unwrap();
+        View::new(&line(place, velocity), &line(DVec3::ZERO, object), 0.25)
+    }
+
+    /// Points in all directions, also all but ahead of and behind the observer, some tiny, huge or none.
+    fn points(count: usize, odd: bool, view: &View) -> Vec<DVec3> {
+        let along = view.relative_velocity().direction();
+        let point = |index: usize| {
+            let turn = |factor: f64| (index as f64 * factor).fract() * std::f64::consts::TAU;
+            let aside = DVec3::new(turn(0.618).sin(), turn(0.414).cos(), turn(0.732).sin());
+            let offset = match index % 5 {
+                0 => along + aside * 1e-9,
+                1 => aside * 1e-12 - along,
+                2 => along * -3.0,
+                _ => aside,
+            };
+            let odd = odd && index % 97 == 96;
+            view.observer_rest()
+                + match index / 97 % 6 {
+                    0 if odd => DVec3::ZERO,
+                    1 if odd => offset * 1e-200,
+                    2 if odd => offset * 1e160,
+                    3 if odd => DVec3::NAN,
+                    4 if odd => DVec3::INFINITY,
+                    _ => offset,
+                }
+        };
+        (0..count).map(point).collect()
+    }
+
+    fn bits(vectors: &[DVec3]) -> Vec<[u64; 3]> {
+        let bits = |vector: &DVec3| vector.to_array().map(f64::to_bits);
+        vectors.iter().map(bits).collect()
+    }
+
+    #[test]
+    fn all_at_once_or_one_by_one_is_the_same_bit_for_bit() {
+        for rapidity in [0.0, 1e-9, 0.5, 3.0, 20.0, 100.0, 300.0] {
+            for odd in [false, true] {
+                // Also a block that is not full, and no point at all.
+                for count in [0, 1, BLOCK, 10 * BLOCK + 17] {
+                    let view = view(rapidity, DVec3::new(0.1, 0.2, 0.3));
+                    let rest = points(count, odd, &view);
+                    let normals = rest.iter().enumerate();
+                    let normals = normals.map(|(index, point)| match index % 50 {
+                        7 => DVec3::ZERO,
+                        _ => DVec3::new(point.z, point.x, point.y)
+                            .try_normalize()
+                            .unwrap_or(DVec3::X),
+                    });
+                    let normals: Vec<DVec3> = normals.collect();
+                    let mut seen = vec![DVec3::ONE; count];
+                    let mut seen_normals = seen.clone();
+                    let extremes = view.see(Batch {
+                        rest: &rest,
+                        seen: &mut seen,
+                        normals: Some((&normals, &mut seen_normals)),
+                    });
+                    let each = || rest.iter().zip(&normals);
+                    let expected: Vec<DVec3> =
+                        each().map(|(&p, _)| view.seen_position(p)).collect();
+                    let case = format!("rapidity {rapidity}, {count} points, odd ones {odd}");
+                    assert_eq!(bits(&seen), bits(&expected), "{case}");
+                    let expected: Vec<DVec3> =
+                        each().map(|(&p, &n)| view.seen_normal(p, n)).collect();
+                    assert_eq!(bits(&seen_normals), bits(&expected), "{case}, normals");
+                    check(&view, &rest, &seen, &extremes);
+                }
+            }
+        }
+    }
+
+    fn check(view: &View, rest: &[DVec3], seen: &[DVec3], extremes: &Extremes) {
+        if rest.is_empty() {
+            assert_eq!(extremes, &Extremes::NONE);
+            assert_eq!(extremes.bounds(), None);
+            return;
+        }
+        let low = seen.iter().fold(DVec3::INFINITY, |low, &p| low.min(p));
+        let high = seen
+            .iter()
+            .fold(DVec3::NEG_INFINITY, |high, &p| high.max(p));
+        assert_eq!(extremes.bounds(), Some((low, high)));
+        let near = |found: f64, expected: &mut dyn Iterator<Item = f64>, least: bool| {
+            let pick = if least { f64::min } else { f64::max };
+            let expected = expected.fold(if least { f64::INFINITY } else { 0.0 }, pick);
+            let same = found == expected || (found / expected - 1.0).abs() < 1e-14;
+            assert!(same, "{found} {expected}");
+        };
+        near(extremes.nearest, &mut seen.iter().map(|&p| length(p)), true);
+        near(
+            extremes.farthest,
+            &mut seen.iter().map(|&p| length(p)),
+            false,
+        );
+        near(
+            extremes.farthest_rest,
+            &mut rest.iter().map(|&p| length(p)),
+            false,
+        );
+        let forwardness = &mut rest.iter().map(|&p| view.forwardness(p));
+        near(extremes.forwardness, forwardness, false);
+    }
+
+    #[test]
+    fn without_normals_places_are_the_same() {
+        let view = view(2.0, DVec3::ZERO);
+        let rest = points(1000, false, &view);
+        let mut seen = vec![DVec3::ZERO; rest.len()];
+        view.see(Batch {
+            rest: &rest,
+            seen: &mut seen,
+            normals: None,
+        });
+        let expected: Vec<DVec3> = rest
+            .iter()
+            .map(|&point| view.seen_position(point))
+            .collect();
+        assert_eq!(bits(&seen), bits(&expected));
+    }
+}
