@@ -7,8 +7,10 @@ use crate::mesh::{Mesh, Part};
 /// Room that a budget leaves for predictions, which are good to about a half (`tests/cli.rs`).
 const PREDICTION_ROOM: f64 = 1.6;
 
-/// Of more triangles than this a prediction looks at as many, evenly spread.
+/// Of more triangles than this, all steps together, a prediction looks at as many, evenly spread, but at each step at
+/// as many as [`LEAST_LOOKED_AT`] at least.
 const TRIANGLES_LOOKED_AT: usize = 50_000;
+const LEAST_LOOKED_AT: usize = 5_000;
 
 /// Of more steps than this a prediction looks at as many, evenly spread.
 const STEPS_LOOKED_AT: usize = 32;
@@ -124,13 +126,14 @@ impl Stage {
     /// All steps together.
     fn foresee(&self, object: usize, wanted: Wanted) -> Foresight {
         let (object, placed) = (&self.scene.objects()[object], &self.objects[object]);
-        let sketch = wanted.subdivide.then(|| placed.sketch()).flatten();
+        let steps = self.scene.steps().len();
+        let looked_at = steps.min(STEPS_LOOKED_AT);
+        let triangles = (TRIANGLES_LOOKED_AT / looked_at).max(LEAST_LOOKED_AT);
+        let sketch = (wanted.subdivide.then(|| placed.sketch(triangles))).flatten();
         let (placed, weights) = match &sketch {
             Some((sketch, weights)) => (sketch, weights.clone()),
             None => (placed, vec![1.0; placed.parts.len()]),
         };
-        let steps = self.scene.steps().len();
-        let looked_at = steps.min(STEPS_LOOKED_AT);
         let mut sum = Foresight {
             triangles: 0.0,
             before: 0.0,
@@ -150,14 +153,14 @@ impl Stage {
 }
 
 impl Placed {
-    /// A sample of the triangles where there are many, and for each part of how many each is a sample.
-    fn sketch(&self) -> Option<(Self, Vec<f64>)> {
+    /// A sample of about `most` triangles where there are more, and for each part of how many each is a sample.
+    fn sketch(&self, most: usize) -> Option<(Self, Vec<f64>)> {
         let count = |part: &Part| part.mesh().triangles().len();
         let all: usize = self.parts.iter().map(|(_, part)| count(part)).sum();
-        if all <= TRIANGLES_LOOKED_AT || self.shaped.is_some() {
+        if all <= most || self.shaped.is_some() {
             return None;
         }
-        let share = TRIANGLES_LOOKED_AT as f64 / all as f64;
+        let share = most as f64 / all as f64;
         let parts = self.parts.iter().map(|(name, part)| {
             let triangles = part.mesh().triangles();
             let sampled = (triangles.len() as f64 * share).ceil() as usize;

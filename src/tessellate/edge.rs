@@ -9,7 +9,7 @@ use super::{Allowance, edge_gap};
 /// An equilateral triangle's edge has three quarters of the gap of its middle. Less makes more triangles
 /// along the edges of the mesh than inside, more leaves those inside no room to be equilateral: 0.6 and 0.9
 /// cost 3 to 40 per cent more triangles on the plates of the benchmark.
-const EDGE_SHARE: f64 = 0.75;
+pub(super) const EDGE_SHARE: f64 = 0.75;
 
 /// Pieces of the integral along an edge; the result is checked, so that no more digits are needed.
 const SAMPLES: usize = 64;

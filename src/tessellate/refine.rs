@@ -5,8 +5,9 @@ use std::collections::HashMap;
 use glam::{DVec3, DVec4, Vec2, Vec4};
 use rayon::prelude::*;
 
-use super::edge::{division, needs_division, point_between};
+use super::edge::{EDGE_SHARE, division, needs_division, point_between};
 use super::sky::{Corner, Pieces, divide};
+use super::survey::{largest_gap_of_others, triangles_above};
 use super::{Allowance, minimum_triangles, triangle_gap};
 use crate::mesh::Mesh;
 
@@ -34,27 +35,48 @@ pub(crate) struct Refined {
 /// positions lie on the flat triangles to rounding, equal for equal edges whatever else the vertices carry;
 /// attributes are interpolated, directions brought to unit length. Same result for any number of threads.
 pub(crate) fn refine(mesh: &Mesh, observer: DVec3, allowance: &Allowance) -> Refined {
-    let positions = mesh.positions();
-    let offsets: Vec<DVec3> = positions
-        .par_iter()
-        .map(|&position| position - observer)
-        .collect();
-    let edges = divided_edges(mesh, &offsets, observer, allowance);
-
-    let outcome: Vec<Outcome> = mesh
-        .triangles()
-        .par_iter()
-        .map(|&corners| outcome(corners, positions, &offsets, observer, &edges, allowance))
-        .collect();
-
+    // What has a small gap at a glance is never divided, nor are its edges: their gaps are not larger.
+    let small = match allowance {
+        Allowance::Everywhere(allowed) => EDGE_SHARE * allowed,
+        Allowance::Angle { .. } => 0.0,
+    };
+    let looked_at = triangles_above(mesh, observer, small);
     let mut refined = Refined {
-        mesh: Mesh::default(),
+        mesh: mesh.clone(),
         gap: 0.0,
         complete: true,
     };
+    if !looked_at.is_empty() {
+        divide_some(mesh, &looked_at, observer, allowance, &mut refined);
+    }
+    refined.gap = largest_gap_of_others(mesh, observer, small, refined.gap);
+    refined
+}
+
+/// Divides those of some triangles that have to be, in their order; all others stay what they are.
+fn divide_some(
+    mesh: &Mesh,
+    looked_at: &[u32],
+    observer: DVec3,
+    allowance: &Allowance,
+    refined: &mut Refined,
+) {
+    let positions = mesh.positions();
+    let all = mesh.triangles();
+    let edges = divided_edges(mesh, looked_at, observer, allowance);
+    let outcomes: Vec<Outcome> = looked_at
+        .par_iter()
+        .map(|&index| outcome(all[index as usize], positions, observer, &edges, allowance))
+        .collect();
+
     let mut origins = edges.origins;
-    let mut triangles = Vec::with_capacity(outcome.len());
-    for (outcome, &corners) in outcome.into_iter().zip(mesh.triangles()) {
+    let mut triangles = Vec::with_capacity(all.len());
+    let mut done = 0;
+    for (outcome, &index) in outcomes.into_iter().zip(looked_at) {
+        let index = index as usize;
+        triangles.extend_from_slice(&all[done..index]);
+        done = index + 1;
+        let corners = all[index];
         match outcome {
             Outcome::Kept { gap, complete } => {
                 refined.gap = refined.gap.max(gap);
@@ -79,12 +101,10 @@ pub(crate) fn refine(mesh: &Mesh, observer: DVec3, allowance: &Allowance) -> Ref
             }
         }
     }
-    refined.mesh = if origins.is_empty() {
-        mesh.clone()
-    } else {
-        interpolated(mesh, &origins, triangles)
-    };
-    refined
+    triangles.extend_from_slice(&all[done..]);
+    if !origins.is_empty() {
+        refined.mesh = interpolated(mesh, &origins, triangles);
+    }
 }
 
 /// What becomes of one triangle.
@@ -136,14 +156,17 @@ fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]]
 }
 
-fn divided_edges(mesh: &Mesh, offsets: &[DVec3], observer: DVec3, allowance: &Allowance) -> Edges {
+fn divided_edges(mesh: &Mesh, looked_at: &[u32], observer: DVec3, allowance: &Allowance) -> Edges {
     let positions = mesh.positions();
-    let mut edges: Vec<[u32; 2]> = mesh
-        .triangles()
+    let needs_division = |[a, b]: [u32; 2]| {
+        let offset = |vertex: u32| positions[vertex as usize] - observer;
+        needs_division(offset(a), offset(b), allowance)
+    };
+    let mut edges: Vec<[u32; 2]> = looked_at
         .par_iter()
-        .flat_map_iter(|&corners| sides(corners))
+        .flat_map_iter(|&index| sides(mesh.triangles()[index as usize]))
+        .filter(|&side| needs_division(side))
         .map(|side| canonical(side, positions))
-        .filter(|&[a, b]| needs_division(offsets[a as usize], offsets[b as usize], allowance))
         .collect();
     edges.par_sort_unstable();
     edges.dedup();
@@ -179,12 +202,11 @@ fn divided_edges(mesh: &Mesh, offsets: &[DVec3], observer: DVec3, allowance: &Al
 fn outcome(
     corners: [u32; 3],
     positions: &[DVec3],
-    offsets: &[DVec3],
     observer: DVec3,
     edges: &Edges,
     allowance: &Allowance,
 ) -> Outcome {
-    let [a, b, c] = corners.map(|corner| offsets[corner as usize]);
+    let [a, b, c] = corners.map(|corner| positions[corner as usize] - observer);
     let sides = sides(corners);
     let divided = |side: &[u32; 2]| edges.divisions.contains_key(&canonical(*side, positions));
     let gap = triangle_gap(a, b, c);

@@ -25,8 +25,30 @@ const BLOCK: usize = 64;
 /// Same result for any number of threads: it is the largest of all, each taken as the smaller one of
 /// [`triangle_gap`] and its ceiling, and who is passed over has a ceiling that is not above it.
 pub(crate) fn largest_gap(mesh: &Mesh, observer: DVec3) -> f64 {
+    largest_gap_of_others(mesh, observer, f64::INFINITY, 0.0)
+}
+
+/// The triangles, in their order, whose gap may be above a limit.
+pub(super) fn triangles_above(mesh: &Mesh, observer: DVec3, limit: f64) -> Vec<u32> {
+    let jobs = mesh.triangles().par_chunks(TRIANGLES_PER_JOB).enumerate();
+    let above = jobs.map(|(job, triangles)| {
+        let mut above = vec![];
+        let mut index = (job * TRIANGLES_PER_JOB) as u32;
+        glance(mesh.positions(), triangles, observer, |ceilings, _| {
+            if !(ceilings.gap <= limit) {
+                above.push(index);
+            }
+            index += 1;
+        });
+        above
+    });
+    above.collect::<Vec<Vec<u32>>>().concat()
+}
+
+/// The largest of the gaps of all triangles but those of [`triangles_above`] the limit, and of one that is known.
+pub(super) fn largest_gap_of_others(mesh: &Mesh, observer: DVec3, limit: f64, known: f64) -> f64 {
     // The bits of floats that are not negative are in the order of the floats.
-    let largest = AtomicU64::new(0);
+    let largest = AtomicU64::new(known.abs().to_bits());
     let jobs = mesh.triangles().par_chunks(TRIANGLES_PER_JOB);
     jobs.for_each(|triangles| {
         glance(
@@ -34,7 +56,9 @@ pub(crate) fn largest_gap(mesh: &Mesh, observer: DVec3) -> f64 {
             triangles,
             observer,
             |ceilings, corners| {
-                if ceilings.gap <= f64::from_bits(largest.load(Ordering::Relaxed)) {
+                if ceilings.gap <= f64::from_bits(largest.load(Ordering::Relaxed))
+                    || !(ceilings.gap <= limit)
+                {
                     return;
                 }
                 let [a, b, c] = corners();
