@@ -23,5 +23,6 @@ pub use camera::{Camera, CameraError, MAX_PICTURE_SIDE, PictureSize, Projection}
 pub use lettering::{lettering, lettering_width};
 pub use paint::RenderError;
 pub use picture::Picture;
+pub(crate) use scenery::grid_places;
 pub use scenery::{PictureOptions, Scenery, Viewpoint};
 pub use stroke::Strokes;
