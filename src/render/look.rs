@@ -45,13 +45,14 @@ impl Look<'_> {
         corner: DVec2,
         places: impl Iterator<Item = DVec2>,
     ) -> Vec3 {
-        let (mut sum, mut count) = (Vec3::ZERO, 0_u32);
+        // In f64: the mean of many equal colours is this colour.
+        let (mut sum, mut count) = (DVec3::ZERO, 0_u32);
         for inside in places {
             let place = corner + inside;
-            sum += self.light(place, camera.direction(place));
+            sum += self.light(place, camera.direction(place)).as_dvec3();
             count += 1;
         }
-        sum / count as f32
+        (sum / f64::from(count)).as_vec3()
     }
 
     /// The linear colour that is seen at a place of the picture, in the direction `seen`.
