@@ -38,23 +38,27 @@ impl Area {
     /// Its pictures with so many rays a pixel along each side, studied.
     fn study(&self, sides: &[u32]) -> CostStudy {
         let fan = (1..self.corners.len() as u32 - 1).map(|corner| [0, corner, corner + 1]);
-        let mesh = Mesh::new(self.corners.clone(), fan.collect()).unwrap();
+        let mesh = Mesh::new(self.corners.clone(), fan.collect()).expect("a fan of triangles");
         let shines = json!({ "extensions": { "KHR_materials_unlit": {} }, "doubleSided": true });
-        let material = Arc::new(Material::new(shines, vec![]).unwrap());
-        let part = Part::new("area", mesh, Some(material)).unwrap();
+        let material = Arc::new(Material::new(shines, vec![]).expect("a material"));
+        let part = Part::new("area", mesh, Some(material)).expect("normals can be had");
         let model = Model { parts: vec![part] };
         let observer = Observer {
-            velocity: Velocity::from_rapidity(self.rapidity, DVec3::NEG_Z).unwrap(),
+            velocity: Velocity::from_rapidity(self.rapidity, DVec3::NEG_Z).expect("a rapidity"),
             ..Observer::default()
         };
         let source = Source::Model(Arc::new(model.clone()));
-        let scene = Scene::new(observer, vec![Object::new("area", source)]).unwrap();
-        let size = PictureSize::new(self.width, self.height).unwrap();
+        let scene = Scene::new(observer, vec![Object::new("area", source)]).expect("one object");
+        let size = PictureSize::new(self.width, self.height).expect("a fair size");
         let projection = Projection::Pinhole {
             vertical_fov_deg: self.fov_deg,
         };
-        let mut rays = RaySettings::new(vec![Camera::new(size, projection, self.look).unwrap()]);
-        let samples = sides.iter().map(|&side| NonZeroU32::new(side).unwrap());
+        let mut rays = RaySettings::new(vec![
+            Camera::new(size, projection, self.look).expect("a fair camera"),
+        ]);
+        let samples = sides
+            .iter()
+            .map(|&side| NonZeroU32::new(side).expect("rays"));
         rays.samples = samples.collect();
         let settings = CostSettings {
             tolerances: vec![],
@@ -62,7 +66,7 @@ impl Area {
             repeats: NonZeroUsize::MIN,
             ..CostSettings::default()
         };
-        CostStudy::new(&scene, &[model], &settings, || ()).unwrap()
+        CostStudy::new(&scene, &[model], &settings, || ()).expect("a study")
     }
 
     /// Right, up and forward of the camera, and how long the middle of an edge is from the middle of the picture at
@@ -146,8 +150,8 @@ fn aberrated(rest: DVec3, rapidity: f64) -> DVec3 {
 
 /// The area of a polygon within the unit square at `corner`: cut by each side in turn (Sutherland, Hodgman 1974).
 fn area_in_square(polygon: &[DVec2], corner: DVec2) -> f64 {
-    let low = polygon.iter().copied().reduce(DVec2::min).unwrap();
-    let high = polygon.iter().copied().reduce(DVec2::max).unwrap();
+    let low = polygon.iter().copied().reduce(DVec2::min).expect("corners");
+    let high = polygon.iter().copied().reduce(DVec2::max).expect("corners");
     if (low - corner).max_element() >= 1.0 || (high - corner).min_element() <= 0.0 {
         return 0.0;
     }
