@@ -103,7 +103,7 @@ impl Panel {
         chart
             .draw_series(DashedLineSeries::new(slope, px(5.0), px(4.0), thin))?
             .label(self.slope_text)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + px(9.0), y)], thin));
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + px(18.0), y)], thin));
         for curve in &self.curves {
             let (color, joined) = (curve.color, curve.joined);
             let line = color.stroke_width(px(2.0) as u32);
@@ -148,12 +148,12 @@ impl Ranged for Decades {
         let (low, high) = (self.0.ceil() as i32, self.1.floor() as i32);
         let stride = ((high - low) / MOST_MARKS + 1) as usize;
         let whole = (low..=high).step_by(stride).map(f64::from);
-        if self.1 - self.0 > FEW_DECADES {
+        if self.1 - self.0 >= FEW_DECADES {
             return whole.collect();
         }
         let between = (low - 1..=high)
             .flat_map(|decade| [1.0, 2.0, 5.0].map(|part: f64| f64::from(decade) + part.log10()));
-        let within = |mark: &f64| self.range().contains(mark);
+        let within = |mark: &f64| (self.0..=self.1).contains(mark);
         between.filter(within).collect()
     }
 
