@@ -13,6 +13,7 @@ mod lettering;
 mod look;
 mod paint;
 mod picture;
+mod placed;
 mod scenery;
 mod sight;
 mod sphere;
