@@ -390,6 +390,19 @@ fn each_half_can_be_had_alone() {
     );
 }
 
+/// Seen larger, the same ball has a longer outline.
+#[test]
+fn the_field_of_view_is_that_of_the_pictures() {
+    let workplace = Workplace::new();
+    let error = |fov: &str| {
+        let flags = "cost --only rays --example sphere --steps 0 --size 32x24 --pixel-samples 2 --repeats 1";
+        let run = workplace.run(&format!("{flags} --fov {fov} --json -"));
+        let study: Value = serde_json::from_slice(&run.success().stdout).unwrap();
+        number(&study["rays"][0], "error")
+    };
+    assert!(error("20") > 1.5 * error("60"));
+}
+
 /// Where nothing is seen nothing is wrong, and there is nothing to plot.
 #[test]
 fn an_empty_picture_is_without_error() {
