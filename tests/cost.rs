@@ -1,4 +1,4 @@
-//! `photosurface cost`: the study is consistent in itself, and its three ways out say the same.
+//! `photosurface cost` of meshes: the study is consistent in itself, and its three ways out say the same.
 
 mod common;
 
@@ -13,7 +13,9 @@ const BALL_AT_REST: &str = r#"{ "objects": [
   { "name": "ball", "shape": { "sphere": { "radius": 1 } }, "position": [0, 0, -4], "scale": [2, 1, 1] } ] }"#;
 
 fn study(workplace: &Workplace, flags: &str) -> Value {
-    let run = workplace.run(&format!("cost --repeats 1 --json study.json {flags}"));
+    let run = workplace.run(&format!(
+        "cost --only meshes --repeats 1 --json study.json {flags}"
+    ));
     assert_eq!(run.success().stderr, "", "{flags}");
     workplace.read_json("study.json")
 }
@@ -190,8 +192,7 @@ fn built_in_scenes_keep_their_bounds() {
 fn table_csv_and_json_say_the_same() {
     let workplace = Workplace::new();
     workplace.write("scene.json", BOX_AHEAD);
-    let flags =
-        "scene.json --repeats 1 --samples 1000 --tolerances 1e-1,1e-2,1e-6 --max-triangles 20000";
+    let flags = "scene.json --only meshes --repeats 1 --samples 1000 --tolerances 1e-1,1e-2,1e-6 --max-triangles 20000";
     let run = workplace.run(&format!("cost {flags} --json study.json --csv study.csv"));
     let run = run.success();
     assert!(
@@ -255,8 +256,8 @@ fn table_csv_and_json_say_the_same() {
 fn the_same_study_twice_differs_in_time_and_memory_alone() {
     let workplace = Workplace::new();
     let timeless = |threads: &str| {
-        let flags =
-            "cost --example cube --tolerances 1e-2,1e-3 --samples 9000 --repeats 2 --json -";
+        let flags = "cost --example cube --tolerances 1e-2,1e-3 --samples 9000 --size 32x18 --pixel-samples 1,2 \
+            --repeats 2 --json -";
         let run = workplace.run_with(flags, b"", &[("RAYON_NUM_THREADS", threads)]);
         let mut study: Value = serde_json::from_slice(&run.success().stdout).unwrap();
         assert_eq!(study["threads"].to_string(), threads);
@@ -264,6 +265,10 @@ fn the_same_study_twice_differs_in_time_and_memory_alone() {
         for row in study["meshes"].as_array_mut().unwrap() {
             row["made"]["seconds"].take();
             row["made"]["peak_memory_bytes"].take();
+        }
+        for row in study["rays"].as_array_mut().unwrap() {
+            row["seconds"].take();
+            row["rays_per_second"].take();
         }
         study
     };
@@ -273,7 +278,7 @@ fn the_same_study_twice_differs_in_time_and_memory_alone() {
 #[test]
 fn plots_are_pictures_of_the_size_asked_for() {
     let workplace = Workplace::new();
-    let flags = "cost --example cube --tolerances 1e-1,1e-2 --samples 100 --repeats 1";
+    let flags = "cost --example cube --tolerances 1e-1,1e-2 --samples 100 --size 32x18 --pixel-samples 1,2 --repeats 1";
     workplace
         .run(&format!("{flags} --plot a.png --plot-size 500x300"))
         .success();
@@ -284,7 +289,7 @@ fn plots_are_pictures_of_the_size_asked_for() {
     workplace.run(&format!("{flags} --plot a.SVG")).success();
     let svg = String::from_utf8(workplace.read("a.SVG")).unwrap();
     assert!(
-        svg.starts_with("<svg width=\"960\" height=\"400\""),
+        svg.starts_with("<svg width=\"960\" height=\"780\""),
         "{svg}"
     );
     for words in [
@@ -293,6 +298,9 @@ fn plots_are_pictures_of_the_size_asked_for() {
         "uniform 1:4",
         "1e-2",
         "inverse to the tolerance",
+        "picture error",
+        "root mean square",
+        "error to the \u{2212}4/3",
     ] {
         assert!(svg.contains(words), "{words}");
     }
@@ -322,9 +330,15 @@ fn errors_name_the_flag() {
         ("--plot-size 960", ["--plot-size", "expected WxH"]),
         ("--json - --csv -", ["--json and --csv", "stdout"]),
         ("--json a --csv ./a", ["./a", "an output too"]),
+        ("--json a_rays --csv a", ["a_rays", "an output too"]),
+        ("--csv -", ["--csv", "choose one with --only"]),
+        ("--pixel-samples 2,1,2", ["--pixel-samples", "2 rays"]),
+        ("--pixel-samples 0", ["--pixel-samples", "expected 1 to 16"]),
+        ("--size 0x9", ["--size", "0 x 9"]),
+        ("--fov 180", ["field of view", "180"]),
         ("--json nowhere/a", ["nowhere/a", "cannot write"]),
         (
-            "--max-triangles 1 --plot out.png",
+            "--only meshes --max-triangles 1 --plot out.png",
             ["--plot", "nothing to plot"],
         ),
     ] {

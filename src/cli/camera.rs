@@ -13,6 +13,9 @@ const FROM: DVec3 = DVec3::new(0.3, 0.3, 1.0);
 /// Room around what is framed.
 const FRAME: f64 = 1.08;
 
+/// The field of view of an observer's picture, in degrees, if nothing else is said.
+pub(super) const OBSERVER_FOV: f64 = 60.0;
+
 /// Between this many directions there are about 20 degrees: what is round sticks out by less than 2 % of its radius
 /// between two places that are farthest out.
 const DIRECTIONS: usize = 128;
@@ -152,7 +155,7 @@ impl CameraArgs {
                 let tan = half.min(1.5).tan() / self.aspect().min(1.0);
                 (2.0 * tan.atan().to_degrees()).clamp(*FIELD.start(), *FIELD.end())
             }
-            None => 60.0,
+            None => OBSERVER_FOV,
         }
     }
 
@@ -207,7 +210,7 @@ impl CameraArgs {
 }
 
 /// The middle of the sky that is taken up, not of space: an observer may be in the midst of things.
-fn middle_of_sky(places: &[DVec3]) -> DVec3 {
+pub(super) fn middle_of_sky(places: &[DVec3]) -> DVec3 {
     let directions: Vec<_> = places
         .iter()
         .filter_map(|place| place.try_normalize())
@@ -259,7 +262,7 @@ fn directions() -> impl Iterator<Item = DVec3> {
 }
 
 /// `WxH`
-fn size(text: &str) -> anyhow::Result<PictureSize> {
+pub(super) fn size(text: &str) -> anyhow::Result<PictureSize> {
     let (width, height) = text
         .split_once(['x', 'X'])
         .context("expected WxH like 1280x720")?;

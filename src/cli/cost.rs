@@ -1,27 +1,33 @@
 //! `photosurface cost`: what accuracy costs in time.
 
-use std::io::{IsTerminal, Write, stderr};
-use std::num::NonZeroUsize;
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use anyhow::{Context, bail, ensure};
-use indicatif::{ProgressBar, ProgressStyle};
 use photosurface::{
-    CostSettings, CostStudy, Made, MeshCost, PlotSize, StudyError, Tolerance, write_whole,
+    Camera, CostSettings, CostStudy, DVec3, Made, PictureSize, PlotSize, Projection, RaySettings,
+    Stage, StudyError, Tolerance, write_whole,
 };
-use serde_json::Value;
 
-use super::accuracy::{grouped_number, tolerance};
-use super::args::{InputArgs, ObserverArgs};
+use super::accuracy::tolerance;
+use super::args::{InputArgs, ObserverArgs, vector};
+use super::camera::{OBSERVER_FOV, middle_of_sky, rough_places, size};
+use super::cost_tables::{csv_of_meshes, csv_of_rays, tables_of};
 use super::input::Input;
-use super::messages::{Verbosity, counted, grouped, print, size};
-use super::output::{check_destinations, is_stdout};
+use super::messages::{Verbosity, grouped, print};
+use super::output::{check_destinations, is_stdout, progress_bar, with_suffix};
 
-/// Show what accuracy costs: triangles, bytes, time and memory for one tolerance after the other
+/// Show what accuracy costs: triangles, bytes, time and memory of meshes over tolerances, rays and time of pictures
 ///
-/// Makes all photosurfaces at each tolerance, writes them to nowhere, and tells the triangles that were made, the least
-/// that theory allows and those that uniform subdivision would take; how large the file is, how long it took, how much
-/// memory was used; the error that is proven and the one that is measured at random places. The table goes to stdout.
+/// Meshes: makes all photosurfaces at each tolerance, writes them to nowhere, and tells the triangles that were made, the
+/// least that theory allows and those that uniform subdivision would take; how large the file is, how long it took, how
+/// much memory was used; the error that is proven and the one that is measured at random places.
+///
+/// Pictures: follows rays of light to what the observer sees at every step, so many a pixel, and tells how long it took
+/// and how far the picture is from one that is made of many more rays at random places.
+///
+/// A table of each goes to stdout.
 #[derive(Debug, clap::Args)]
 pub(super) struct CostArgs {
     #[command(flatten)]
@@ -31,8 +37,12 @@ pub(super) struct CostArgs {
     #[command(flatten)]
     study: StudyArgs,
     #[command(flatten)]
+    meshes: MeshArgs,
+    #[command(flatten)]
+    pictures: PictureArgs,
+    #[command(flatten)]
     output: OutputArgs,
-    /// Print the table alone, without notes
+    /// Print the tables alone, without notes
     #[arg(short, long, help_heading = "Messages")]
     quiet: bool,
 }
@@ -40,11 +50,10 @@ pub(super) struct CostArgs {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Study")]
 struct StudyArgs {
-    /// Tolerances to compare, for all objects: fractions of the diagonal (1e-3), lengths in scene units (abs:0.01) or
-    /// angles in degrees (deg:0.02), all of one kind [default: 1e-1,1e-2,1e-3,1e-4,1e-5,1e-6]
-    #[arg(long, value_name = "T,T,...", value_delimiter = ',', value_parser = tolerance, allow_hyphen_values = true)]
-    tolerances: Vec<Tolerance>,
-    /// How often each tolerance is carried out, at least 1; times are medians
+    /// Study one of them alone [default: both]
+    #[arg(long, value_enum)]
+    only: Option<Half>,
+    /// How often each tolerance and each picture is carried out, at least 1; times are medians
     #[arg(
         long,
         value_name = "N",
@@ -52,6 +61,23 @@ struct StudyArgs {
         allow_negative_numbers = true
     )]
     repeats: NonZeroUsize,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Half {
+    /// Photosurfaces as meshes, over tolerances
+    Meshes,
+    /// Pictures by rays of light, over the number of rays a pixel
+    Rays,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Meshes")]
+struct MeshArgs {
+    /// Tolerances to compare, for all objects: fractions of the diagonal (1e-3), lengths in scene units (abs:0.01) or
+    /// angles in degrees (deg:0.02), all of one kind [default: 1e-1,1e-2,1e-3,1e-4,1e-5,1e-6]
+    #[arg(long, value_name = "T,T,...", value_delimiter = ',', value_parser = tolerance, allow_hyphen_values = true)]
+    tolerances: Vec<Tolerance>,
     /// Tolerances that would take more triangles, all photosurfaces together, are foretold and not carried out
     #[arg(
         long,
@@ -71,20 +97,40 @@ struct StudyArgs {
 }
 
 #[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Pictures (directions are in the observer's frame)")]
+struct PictureArgs {
+    /// Rays a pixel along each side to compare: N for N x N of them, as render --samples has it, from 1 to 16; the
+    /// reference takes 8 times as many as the largest of them [default: 1,2,4,8]
+    #[arg(long, value_name = "N,N,...", value_delimiter = ',', value_parser = pixel_samples, allow_hyphen_values = true)]
+    pixel_samples: Vec<NonZeroU32>,
+    /// Width and height of the pictures in pixels
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "320x180")]
+    size: PictureSize,
+    /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180
+    #[arg(long, value_name = "DEG", default_value_t = OBSERVER_FOV, allow_negative_numbers = true)]
+    fov: f64,
+    /// Direction in which the observer looks, of any length [default: at each step to the middle of what is there]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    look: Option<DVec3>,
+}
+
+#[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Output")]
 struct OutputArgs {
     /// Write the study as JSON; - for stdout, in place of the table
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Write the table with all digits as CSV, one tolerance a line; - for stdout, in place of the table
+    /// Write the table with all digits as CSV, one tolerance or number of rays a line; where both are studied, FILE has
+    /// the meshes and FILE_rays, with the same extension, the pictures; - for stdout, in place of the table, with --only
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draw triangles and time over the tolerance, both logarithmic: .png or .svg
+    /// Draw triangles and time over the tolerance, rays and time over the error of pictures, all logarithmic, with the
+    /// slope of theory: .png or .svg
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// Size of the plot in pixels, from 320x200 to 8192x8192
-    #[arg(long, value_name = "WxH", value_parser = plot_size, default_value = "960x400")]
-    plot_size: PlotSize,
+    /// Size of the plot in pixels, from 320x200 to 8192x8192 [default: 960x400, or 960x780 for both]
+    #[arg(long, value_name = "WxH", value_parser = plot_size)]
+    plot_size: Option<PlotSize>,
 }
 
 /// What a plot is written as.
@@ -96,40 +142,47 @@ enum Picture {
 
 pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     let verbosity = Verbosity::new(args.quiet, false);
-    let output = &args.output;
+    let (output, only) = (&args.output, args.study.only);
     let picture = output.picture()?;
     let to_stdout = |file: &Option<PathBuf>| file.as_deref().is_some_and(is_stdout);
     ensure!(
         !(to_stdout(&output.json) && to_stdout(&output.csv)),
         "--json and --csv cannot both go to stdout"
     );
+    ensure!(
+        !(to_stdout(&output.csv) && only.is_none()),
+        "--csv: two tables cannot both go to stdout; choose one with --only meshes or --only rays"
+    );
+    let tables = output.tables(only);
     let input = Input::read(&args.input, &args.observer, verbosity)?;
-    let files = [&output.json, &output.csv, &output.plot];
-    check_destinations(files.into_iter().flatten().cloned(), &input.files)?;
+    let files = [&output.json, &output.plot].into_iter().flatten();
+    let files = files.chain(tables.iter().map(|(path, _)| path));
+    check_destinations(files.cloned(), &input.files)?;
 
-    let mut settings = CostSettings {
-        repeats: args.study.repeats,
-        most_triangles: args.study.max_triangles,
-        samples: args.study.samples,
-        ..CostSettings::default()
-    };
-    if !args.study.tolerances.is_empty() {
-        settings.tolerances.clone_from(&args.study.tolerances);
-    }
-    let progress = progress_bar(settings.tolerances.len(), verbosity);
-    let study = CostStudy::new(&input.scene, &input.models, &settings, |_| progress.inc(1));
+    let settings = args.settings(&input)?;
+    let pictures = settings.rays.as_ref();
+    // With the references.
+    let pictures = pictures.map_or(0, |rays| rays.samples.len() + 1);
+    let progress = progress_bar(settings.tolerances.len() + pictures, "done", verbosity);
+    progress.enable_steady_tick(Duration::from_millis(200));
+    let study = CostStudy::new(&input.scene, &input.models, &settings, || progress.inc(1));
     progress.finish_and_clear();
     let study = study.map_err(|error| match error {
-        StudyError::Write { .. } => anyhow::Error::new(error),
+        StudyError::Write { .. } | StudyError::Render(_) => anyhow::Error::new(error),
+        StudyError::RepeatedSamples(_) => anyhow::Error::new(error).context("--pixel-samples"),
         _ => anyhow::Error::new(error).context("--tolerances"),
     })?;
-    tell(&study, args.study.max_triangles, verbosity);
+    tell(&study, args.meshes.max_triangles, verbosity);
 
     // The plot may fail: nothing is written before it is there.
+    let plot_size = match output.plot_size {
+        Some(size) => size,
+        None => PlotSize::new(960, if only.is_none() { 780 } else { 400 })?,
+    };
     let plot = picture.map(|(path, picture)| {
         let drawn = match picture {
-            Picture::Png => study.plot_png(output.plot_size),
-            Picture::Svg => study.plot_svg(output.plot_size).map(String::into_bytes),
+            Picture::Png => study.plot_png(plot_size),
+            Picture::Svg => study.plot_svg(plot_size).map(String::into_bytes),
         };
         drawn.context("--plot").map(|bytes| (path, bytes))
     });
@@ -139,16 +192,78 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     if let Some(path) = &output.json {
         write(path, (study.to_json() + "\n").as_bytes())?;
     }
-    if let Some(path) = &output.csv {
-        write(path, csv(&study).as_bytes())?;
+    for (path, half) in &tables {
+        let csv = match half {
+            Half::Meshes => csv_of_meshes(&study.meshes),
+            Half::Rays => csv_of_rays(&study.rays),
+        };
+        write(path, csv.as_bytes())?;
     }
     if !to_stdout(&output.json) && !to_stdout(&output.csv) {
-        print(|out| table(&study, out))?;
+        print(|out| tables_of(&study, out))?;
     }
     Ok(())
 }
 
+impl CostArgs {
+    fn settings(&self, input: &Input) -> anyhow::Result<CostSettings> {
+        let only = self.study.only;
+        let default = CostSettings::default();
+        let tolerances = match self.meshes.tolerances.as_slice() {
+            _ if only == Some(Half::Rays) => vec![],
+            [] => default.tolerances,
+            tolerances => tolerances.to_vec(),
+        };
+        let rays = match only {
+            Some(Half::Meshes) => None,
+            _ => Some(self.pictures.settings(input)?),
+        };
+        Ok(CostSettings {
+            tolerances,
+            rays,
+            repeats: self.study.repeats,
+            most_triangles: self.meshes.max_triangles,
+            samples: self.meshes.samples,
+            ..default
+        })
+    }
+}
+
+impl PictureArgs {
+    /// With the cameras that `render` has for the observer.
+    fn settings(&self, input: &Input) -> anyhow::Result<RaySettings> {
+        let stage = Stage::new(input.scene.clone(), input.models.clone());
+        let projection = Projection::Pinhole {
+            vertical_fov_deg: self.fov,
+        };
+        let camera = |step| {
+            let ahead = || middle_of_sky(&rough_places(&stage, step));
+            Camera::new(self.size, projection, self.look.unwrap_or_else(ahead))
+        };
+        let cameras: Result<Vec<_>, _> = (0..input.scene.steps().len()).map(camera).collect();
+        let mut settings = RaySettings::new(cameras?);
+        if !self.pixel_samples.is_empty() {
+            settings.samples.clone_from(&self.pixel_samples);
+        }
+        Ok(settings)
+    }
+}
+
 impl OutputArgs {
+    /// A file for each table.
+    fn tables(&self, only: Option<Half>) -> Vec<(PathBuf, Half)> {
+        let Some(path) = &self.csv else {
+            return vec![];
+        };
+        match only {
+            Some(half) => vec![(path.clone(), half)],
+            None => vec![
+                (path.clone(), Half::Meshes),
+                (with_suffix(path, "_rays"), Half::Rays),
+            ],
+        }
+    }
+
     fn picture(&self) -> anyhow::Result<Option<(&Path, Picture)>> {
         let Some(path) = self.plot.as_deref() else {
             return Ok(None);
@@ -195,17 +310,6 @@ fn tell(study: &CostStudy, max_triangles: u64, verbosity: Verbosity) {
     }
 }
 
-fn progress_bar(tolerances: usize, verbosity: Verbosity) -> ProgressBar {
-    if verbosity.is_quiet() || !stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} tolerances {elapsed}")
-        .expect("the template is well-formed");
-    let bar = ProgressBar::new(tolerances as u64).with_style(style);
-    bar.enable_steady_tick(std::time::Duration::from_millis(200));
-    bar
-}
-
 fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     if is_stdout(path) {
         return print(|out| Ok(out.write_all(bytes)?));
@@ -213,119 +317,11 @@ fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     Ok(write_whole(path, |writer| Ok(writer.write_all(bytes)?))?)
 }
 
-const HEADINGS: [&str; 13] = [
-    "tolerance",
-    "foretold",
-    "triangles",
-    "least",
-    "ratio",
-    "uniform",
-    "bound",
-    "error",
-    "size",
-    "predict s",
-    "surface s",
-    "write s",
-    "memory",
-];
-
-fn table(study: &CostStudy, out: &mut dyn Write) -> anyhow::Result<()> {
-    let mut rows = vec![HEADINGS.map(str::to_owned)];
-    rows.extend(study.meshes.iter().map(cells));
-    let width = |column: usize| rows.iter().map(|row| row[column].len()).max().unwrap_or(0);
-    let widths: [usize; HEADINGS.len()] = std::array::from_fn(width);
-    for row in &rows {
-        let cells = row.iter().zip(widths);
-        let cells: Vec<String> = cells
-            .map(|(cell, width)| format!("{cell:>width$}"))
-            .collect();
-        writeln!(out, "{}", cells.join("  "))?;
-    }
-    let unit = match study.unit {
-        "relative" => "relative to the diagonal of each photosurface",
-        "absolute" => "lengths",
-        _ => "degrees",
-    };
-    writeln!(
-        out,
-        "tolerance (asked), bound (proven) and error (measured) are {unit}; times are medians of {}, {}",
-        counted(study.repeats, "run"),
-        counted(study.threads, "thread"),
-    )?;
-    Ok(())
-}
-
-/// One line of the table.
-fn cells(cost: &MeshCost) -> [String; HEADINGS.len()] {
-    let mut cells: [String; HEADINGS.len()] = std::array::from_fn(|_| "-".to_owned());
-    cells[0] = format!("{:.0e}", cost.tolerance);
-    if cells[0].parse() != Ok(cost.tolerance) {
-        cells[0] = format!("{:.3e}", cost.tolerance);
-    }
-    cells[1] = grouped_number(cost.predicted_triangles);
-    let Some(made) = &cost.made else {
-        return cells;
-    };
-    cells[2] = grouped(made.triangles);
-    cells[3] = grouped_number(made.minimum_triangles);
-    cells[4] = format!("{:.2}", made.ratio);
-    cells[5] = grouped_number(made.uniform.triangles);
-    cells[6] = format!("{:.2e}", made.bound);
-    cells[7] = format!("{:.2e}", made.error);
-    cells[8] = size(made.file_bytes);
-    let seconds = [
-        made.seconds.predict,
-        made.seconds.photosurface,
-        made.seconds.write,
-    ];
-    for (cell, seconds) in cells[9..].iter_mut().zip(seconds) {
-        *cell = format!("{seconds:.4}");
-    }
-    if let Some(bytes) = made.peak_memory_bytes {
-        cells[12] = size(bytes);
-    }
-    cells
-}
-
-/// Columns of the CSV, and where their numbers stand in the JSON of a tolerance.
-const COLUMNS: [(&str, &str); 22] = [
-    ("tolerance", "/tolerance"),
-    ("predicted_triangles", "/predicted_triangles"),
-    ("reachable", "/reachable"),
-    ("triangles", "/made/triangles"),
-    ("triangles_in", "/made/triangles_in"),
-    ("minimum_triangles", "/made/minimum_triangles"),
-    ("ratio", "/made/ratio"),
-    ("file_bytes", "/made/file_bytes"),
-    ("predict_seconds", "/made/seconds/predict"),
-    ("photosurface_seconds", "/made/seconds/photosurface"),
-    ("write_seconds", "/made/seconds/write"),
-    ("peak_memory_bytes", "/made/peak_memory_bytes"),
-    ("certified", "/made/certified"),
-    ("gap", "/made/gap"),
-    ("bound", "/made/bound"),
-    ("bound_length", "/made/bound_length"),
-    ("error", "/made/error"),
-    ("error_length", "/made/error_length"),
-    ("error_over_bound", "/made/error_over_bound"),
-    ("uniform_levels", "/made/uniform/levels"),
-    ("uniform_triangles", "/made/uniform/triangles"),
-    ("uniform_gap_length", "/made/uniform/run/gap"),
-];
-
-/// Names of the columns in the first line; what is not known is empty.
-fn csv(study: &CostStudy) -> String {
-    let names = COLUMNS.map(|(name, _)| name);
-    let mut lines = vec![names.join(",")];
-    for cost in &study.meshes {
-        let json = serde_json::to_value(cost).expect("names and numbers");
-        let cells = COLUMNS.map(|(_, place)| match json.pointer(place) {
-            None | Some(Value::Null) => String::new(),
-            Some(value) => value.to_string(),
-        });
-        lines.push(cells.join(","));
-    }
-    lines.join("\n") + "\n"
+/// As `render --samples`.
+fn pixel_samples(text: &str) -> anyhow::Result<NonZeroU32> {
+    let number = text.trim().parse().ok();
+    let number = number.filter(|number: &NonZeroU32| number.get() <= 16);
+    number.with_context(|| format!("\"{text}\" is no number of rays, expected 1 to 16"))
 }
 
 /// `960x400`

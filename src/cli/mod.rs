@@ -5,6 +5,7 @@ mod args;
 mod camera;
 mod check;
 mod cost;
+mod cost_tables;
 mod example;
 mod export;
 mod guides;

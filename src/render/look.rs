@@ -38,8 +38,25 @@ pub(super) struct Look<'a> {
 }
 
 impl Look<'_> {
+    /// The linear colour of a pixel: the mean over places within it, given from its upper left corner.
+    pub(super) fn mean_light(
+        &self,
+        camera: &Camera,
+        corner: DVec2,
+        places: impl Iterator<Item = DVec2>,
+    ) -> Vec3 {
+        // In f64: the mean of many equal colours is this colour.
+        let (mut sum, mut count) = (DVec3::ZERO, 0_u32);
+        for inside in places {
+            let place = corner + inside;
+            sum += self.light(place, camera.direction(place)).as_dvec3();
+            count += 1;
+        }
+        (sum / f64::from(count)).as_vec3()
+    }
+
     /// The linear colour that is seen at a place of the picture, in the direction `seen`.
-    pub(super) fn light(&self, place: DVec2, seen: DVec3) -> Vec3 {
+    fn light(&self, place: DVec2, seen: DVec3) -> Vec3 {
         let (mut light, distance) = self.solid_light(place, seen);
         for (ghost, color) in self.ghosts.iter().zip(&self.ghost_colors) {
             if let Some(meeting) = ghost.meeting(self.eye, seen, 0.0, f64::MAX, false) {

@@ -13,6 +13,7 @@ mod lettering;
 mod look;
 mod paint;
 mod picture;
+mod placed;
 mod scenery;
 mod sight;
 mod sphere;
@@ -23,5 +24,6 @@ pub use camera::{Camera, CameraError, MAX_PICTURE_SIDE, PictureSize, Projection}
 pub use lettering::{lettering, lettering_width};
 pub use paint::RenderError;
 pub use picture::Picture;
+pub(crate) use scenery::grid_places;
 pub use scenery::{PictureOptions, Scenery, Viewpoint};
 pub use stroke::Strokes;

@@ -198,9 +198,48 @@ impl Scenery {
         options: PictureOptions,
         row_done: &(dyn Fn() + Sync),
     ) -> Picture {
-        let eye = viewpoint.eye();
-        let look = Look {
-            eye,
+        let look = self.look(camera, viewpoint, options);
+        let size = camera.size();
+        let mut bytes = vec![0; 3 * size.width() as usize * size.height() as usize];
+        let rows = bytes.par_chunks_mut(3 * size.width() as usize);
+        rows.enumerate().for_each(|(y, row)| {
+            for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
+                let corner = DVec2::new(x as f64, y as f64);
+                let light = look.mean_light(camera, corner, grid_places(options.samples));
+                pixel.copy_from_slice(&encoded(light));
+            }
+            row_done();
+        });
+        Picture::new(size, bytes)
+    }
+
+    /// The linear light of all pixels, row by row from the top, before it becomes bytes: of each pixel, by its number,
+    /// the mean over `places` within it, at least one, from (0, 0) to (1, 1).
+    pub(crate) fn light<P: Iterator<Item = DVec2>>(
+        &self,
+        camera: &Camera,
+        viewpoint: Viewpoint,
+        options: PictureOptions,
+        places: impl Fn(usize) -> P + Sync,
+    ) -> Vec<Vec3> {
+        let look = self.look(camera, viewpoint, options);
+        let width = camera.size().width() as usize;
+        let pixels = (0..width * camera.size().height() as usize).into_par_iter();
+        let light = pixels.map(|pixel| {
+            let corner = DVec2::new((pixel % width) as f64, (pixel / width) as f64);
+            look.mean_light(camera, corner, places(pixel))
+        });
+        light.collect()
+    }
+
+    fn look<'a>(
+        &'a self,
+        camera: &'a Camera,
+        viewpoint: Viewpoint,
+        options: PictureOptions,
+    ) -> Look<'a> {
+        Look {
+            eye: viewpoint.eye(),
             sitters: sitters(self.bodies.iter(), viewpoint),
             ghosts: sitters(self.ghosts.iter().map(|(body, _)| body), viewpoint),
             ghost_colors: self.ghosts.iter().map(|&(_, color)| color).collect(),
@@ -208,25 +247,7 @@ impl Scenery {
             wires: options
                 .wireframe
                 .map(|color| (color.linear().into(), camera)),
-        };
-        let samples = options.samples.max(1);
-        let size = camera.size();
-        let mut bytes = vec![0; 3 * size.width() as usize * size.height() as usize];
-        let rows = bytes.par_chunks_mut(3 * size.width() as usize);
-        rows.enumerate().for_each(|(y, row)| {
-            for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
-                let corner = DVec2::new(x as f64, y as f64);
-                let mut sum = Vec3::ZERO;
-                for part in 0..samples * samples {
-                    let inside = DVec2::new((part % samples).into(), (part / samples).into());
-                    let place = corner + (inside + 0.5) / f64::from(samples);
-                    sum += look.light(place, camera.direction(place));
-                }
-                pixel.copy_from_slice(&encoded(sum / (samples * samples) as f32));
-            }
-            row_done();
-        });
-        Picture::new(size, bytes)
+        }
     }
 
     /// Draws lines that stand in the observer's frame onto a picture that `camera` took; what is behind
@@ -243,6 +264,14 @@ impl Scenery {
         let hidden = |seen, distance| nearest(&sitters, eye, seen, 0.0, distance, false).is_some();
         picture.draw_in_space(strokes, camera, eye, hidden);
     }
+}
+
+/// Places in a pixel, from (0, 0) to (1, 1): the middles of `samples` by `samples` squares, at least one.
+pub(crate) fn grid_places(samples: u32) -> impl Iterator<Item = DVec2> {
+    let samples = samples.max(1);
+    let columns = move |row| (0..samples).map(move |column| DVec2::new(column.into(), row));
+    let squares = (0..samples).flat_map(move |row| columns(row.into()));
+    squares.map(move |square| (square + 0.5) / f64::from(samples))
 }
 
 /// The mesh of a part that a shape is, fine enough for pictures.

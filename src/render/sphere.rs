@@ -1,43 +1,24 @@
 //! Where rays meet a sphere: the surface itself, no facets.
 
-use glam::{DAffine3, DMat3, DVec2, DVec3};
+use glam::{DAffine3, DVec3};
 
+use super::placed::{Placed, SmoothHit};
 use crate::mesh::Sphere;
 
 /// A sphere, or what turning and stretching makes of one.
 pub(super) struct Ball {
     shape: Sphere,
-    radius: f64,
-    to_model: DAffine3,
-    /// Centre and radius of a ball around it.
-    around: (DVec3, f64),
-}
-
-/// Where a ray meets a surface that has no facets.
-pub(super) struct SmoothHit {
-    pub(super) distance: f64,
-    /// Outwards, of any length.
-    pub(super) normal: DVec3,
-    pub(super) texture: DVec2,
+    placed: Placed,
 }
 
 impl Ball {
     pub(super) fn new(shape: Sphere, model_to_rest: DAffine3) -> Self {
-        let radius = shape.radius.get();
-        let stretch = model_to_rest.matrix3;
-        // Of a turned and stretched sphere no point is farther out than along its longest axis.
-        let longest = [stretch.x_axis, stretch.y_axis, stretch.z_axis].map(DVec3::length);
-        let longest = longest.into_iter().fold(0.0, f64::max);
-        Self {
-            radius,
-            shape,
-            to_model: model_to_rest.inverse(),
-            around: (model_to_rest.translation, radius * longest),
-        }
+        let placed = Placed::new(shape.radius.get(), model_to_rest);
+        Self { shape, placed }
     }
 
     pub(super) fn around(&self) -> (DVec3, f64) {
-        self.around
+        self.placed.around()
     }
 
     /// The nearest hit farther than `beyond` and not as far as `limit`.
@@ -51,18 +32,18 @@ impl Ball {
         beyond: f64,
         limit: f64,
     ) -> Option<SmoothHit> {
-        let origin = self.to_model.transform_point3(origin);
-        let direction = self.to_model.matrix3 * direction;
+        let (origin, direction) = self.placed.ray_to_model(origin, direction);
+        let radius = self.shape.radius.get();
         let speed = direction.length();
         let middle = -origin.dot(direction) / speed / speed;
         let closest = (origin + direction * middle).length();
-        if !(closest < self.radius) {
+        if !(closest < radius) {
             return None;
         }
-        let half = ((self.radius - closest) * (self.radius + closest)).sqrt() / speed;
+        let half = ((radius - closest) * (radius + closest)).sqrt() / speed;
         // Of the two distances middle -+ half the one that would cancel is a quotient of their product.
-        let excess = origin.length() - self.radius;
-        let product = excess / speed * ((origin.length() + self.radius) / speed);
+        let excess = origin.length() - radius;
+        let product = excess / speed * ((origin.length() + radius) / speed);
         let (near, far) = match middle > 0.0 {
             true => (product / (middle + half), middle + half),
             false => (middle - half, product / (middle - half)),
@@ -74,10 +55,9 @@ impl Ball {
             return None;
         }
         let place = origin + direction * distance;
-        let model_to_rest_normals: DMat3 = self.to_model.matrix3.transpose();
         Some(SmoothHit {
             distance,
-            normal: model_to_rest_normals * place,
+            normal: self.placed.normal_to_rest(place),
             texture: self.shape.texture_at(place),
         })
     }

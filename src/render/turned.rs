@@ -1,35 +1,28 @@
 //! Where rays meet cylinders, rods and cones: the surfaces themselves, no facets.
 
-use glam::{DAffine3, DMat3, DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 
-use super::sphere::SmoothHit;
+use super::placed::{Placed, SmoothHit};
 use crate::mesh::Band;
 
 /// A closed surface of straight bands turned about an axis, or what turning and stretching makes of it.
 pub(super) struct Turned {
     bands: Vec<Band>,
-    to_model: DAffine3,
-    /// Centre and radius of a ball around it.
-    around: (DVec3, f64),
+    placed: Placed,
 }
 
 impl Turned {
     pub(super) fn new(bands: Vec<Band>, model_to_rest: DAffine3) -> Self {
-        let stretch = model_to_rest.matrix3;
-        // Axes stay at right angles: nothing is stretched by more than the longest of them.
-        let longest = [stretch.x_axis, stretch.y_axis, stretch.z_axis].map(DVec3::length);
-        let longest = longest.into_iter().fold(0.0, f64::max);
         let ends = bands.iter().flat_map(|band| band.ends);
         let radius = ends.map(DVec2::length).fold(0.0, f64::max);
         Self {
             bands,
-            to_model: model_to_rest.inverse(),
-            around: (model_to_rest.translation, radius * longest),
+            placed: Placed::new(radius, model_to_rest),
         }
     }
 
     pub(super) fn around(&self) -> (DVec3, f64) {
-        self.around
+        self.placed.around()
     }
 
     /// The nearest hit farther than `beyond` and not as far as `limit`.
@@ -43,8 +36,7 @@ impl Turned {
         beyond: f64,
         limit: f64,
     ) -> Option<SmoothHit> {
-        let origin = self.to_model.transform_point3(origin);
-        let direction = self.to_model.matrix3 * direction;
+        let (origin, direction) = self.placed.ray_to_model(origin, direction);
         let speed = direction.length();
         let direction = direction / speed;
         let middle = -origin.dot(direction);
@@ -63,10 +55,9 @@ impl Turned {
         let place = closest + direction * (distance * speed - middle);
         let outwards = DVec2::new(place.x, place.z).normalize_or_zero() * band.normal.x;
         let normal = DVec3::new(outwards.x, band.normal.y, outwards.y);
-        let model_to_rest_normals: DMat3 = self.to_model.matrix3.transpose();
         Some(SmoothHit {
             distance,
-            normal: model_to_rest_normals * normal,
+            normal: self.placed.normal_to_rest(normal),
             texture: band.texture_at(place),
         })
     }

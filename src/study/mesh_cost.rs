@@ -197,19 +197,21 @@ fn run(stage: &Stage, wanted: Wanted, tolerance: Tolerance) -> Result<Run, Study
 }
 
 fn medians(times: &[Seconds]) -> Seconds {
-    let median = |of: fn(&Seconds) -> f64| {
-        let mut sorted: Vec<f64> = times.iter().map(of).collect();
-        sorted.sort_by(f64::total_cmp);
-        let middle = sorted.len() / 2;
-        match sorted.len() % 2 {
-            0 => 0.5 * (sorted[middle - 1] + sorted[middle]),
-            _ => sorted[middle],
-        }
-    };
+    let median = |of: fn(&Seconds) -> f64| median(times.iter().map(of).collect());
     Seconds {
         predict: median(|times| times.predict),
         photosurface: median(|times| times.photosurface),
         write: median(|times| times.write),
+    }
+}
+
+/// The one in the middle, or the mean of two.
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() % 2 {
+        0 => 0.5 * (values[middle - 1] + values[middle]),
+        _ => values[middle],
     }
 }
 

@@ -1,34 +1,41 @@
 //! What accuracy costs: for one tolerance after the other the triangles, bytes, time and memory that it takes, what is
-//! proven and what is measured then, and what theory and uniform subdivision say.
+//! proven and what is measured then, and what theory and uniform subdivision say; for pictures by rays of light, for one
+//! number of rays a pixel after the other, the time that it takes and the error that is measured.
 
 mod measured;
 mod memory;
 mod mesh_cost;
+mod panel;
 mod plot;
 mod random;
+mod ray_cost;
 mod true_surface;
 mod uniform;
 
-use std::num::NonZeroUsize;
+use std::num::{NonZeroU32, NonZeroUsize};
 
 use serde::Serialize;
 use thiserror::Error;
 
 pub use mesh_cost::{Made, MeshCost, Seconds};
 pub use plot::{PlotError, PlotSize};
+pub use ray_cost::{Pictures, RayCost, RaySettings};
 pub use uniform::{UniformCost, UniformRun};
 
 use crate::io::WriteError;
 use crate::mesh::Model;
 use crate::photosurface::{SceneFacts, Stage};
+use crate::render::RenderError;
 use crate::scene::{Scene, Tolerance};
 
 /// What a study looks at, and how closely.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CostSettings {
-    /// All in one unit, none twice, in any order.
+    /// Of meshes: all in one unit, none twice, in any order; none for no meshes.
     pub tolerances: Vec<Tolerance>,
-    /// How often each is carried out; times are medians.
+    /// Pictures by rays, if there are to be any.
+    pub rays: Option<RaySettings>,
+    /// How often each tolerance and each number of rays is carried out; times are medians.
     pub repeats: NonZeroUsize,
     /// What would take more triangles is foretold, and not made.
     pub most_triangles: u64,
@@ -39,11 +46,12 @@ pub struct CostSettings {
 }
 
 impl Default for CostSettings {
-    /// From a tenth to a millionth of the diagonal.
+    /// Meshes alone, from a tenth to a millionth of the diagonal.
     fn default() -> Self {
         let tolerances = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
         Self {
             tolerances: tolerances.map(Tolerance::Relative).to_vec(),
+            rays: None,
             repeats: NonZeroUsize::MIN.saturating_add(2),
             most_triangles: 3_000_000,
             samples: NonZeroUsize::MIN.saturating_add(199_999),
@@ -68,7 +76,7 @@ impl Default for CostSettings {
 ///     tolerances: vec![Tolerance::Relative(1e-2), Tolerance::Relative(1e-3)],
 ///     ..CostSettings::default()
 /// };
-/// let study = CostStudy::new(&scene, &models, &settings, |_| ())?;
+/// let study = CostStudy::new(&scene, &models, &settings, || ())?;
 /// for cost in &study.meshes {
 ///     let made = cost.made.as_ref().expect("few triangles");
 ///     assert!(made.error <= made.bound && made.bound <= cost.tolerance);
@@ -79,25 +87,36 @@ impl Default for CostSettings {
 pub struct CostStudy {
     /// The scene.
     pub scene: SceneFacts,
-    /// Of tolerances: `relative`, to the diagonal of each photosurface, `absolute`, a length, or `angle_deg`.
-    pub unit: &'static str,
+    /// Of tolerances: `relative`, to the diagonal of each photosurface, `absolute`, a length, or `angle_deg`; `None`
+    /// without meshes.
+    pub unit: Option<&'static str>,
     /// How many threads there were.
     pub threads: usize,
-    /// How often each tolerance was carried out.
+    /// How often each tolerance and each number of rays was carried out.
     pub repeats: usize,
-    /// Places at which each error was measured.
+    /// Places at which each error of meshes was measured.
     pub samples: usize,
     /// Of photosurfaces as meshes, the loosest tolerance first.
     pub meshes: Vec<MeshCost>,
+    /// Which pictures were made by rays, if any were.
+    pub pictures: Option<Pictures>,
+    /// Of these pictures, the fewest rays first.
+    pub rays: Vec<RayCost>,
 }
 
 /// Why there is nothing to study.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum StudyError {
-    /// No tolerance.
-    #[error("no tolerance to study, expected at least one")]
-    NoTolerance,
+    /// No tolerance, and no number of rays.
+    #[error("nothing to study, expected at least one tolerance or number of rays a pixel")]
+    Nothing,
+    /// One number of rays twice.
+    #[error("{0} rays along each side of a pixel are there twice, expected each number once")]
+    RepeatedSamples(u32),
+    /// What cannot be drawn.
+    #[error(transparent)]
+    Render(#[from] RenderError),
     /// One tolerance twice.
     #[error("the tolerance {0} is there twice, expected each once")]
     Repeated(Tolerance),
@@ -115,39 +134,56 @@ pub enum StudyError {
 }
 
 impl CostStudy {
-    /// Studies a scene with one model for each object; `done` is told of every tolerance as soon as it is done.
+    /// Studies a scene with one model for each object; `done` is called after every tolerance, after the references
+    /// of pictures and after every number of rays.
     ///
     /// # Errors
     ///
-    /// No tolerance, one twice, or several units; photosurfaces that do not make a file.
+    /// Nothing to study; one tolerance or number of rays twice, or tolerances of several units; photosurfaces that do
+    /// not make a file; textures that cannot be decoded.
     ///
     /// # Panics
     ///
-    /// If there are not as many models as objects.
+    /// If there are not as many models as objects, or for pictures not as many cameras as steps.
     pub fn new(
         scene: &Scene,
         models: &[Model],
         settings: &CostSettings,
-        mut done: impl FnMut(&MeshCost),
+        mut done: impl FnMut(),
     ) -> Result<Self, StudyError> {
         let tolerances = in_order(&settings.tolerances)?;
-        let &[first, ..] = tolerances.as_slice() else {
-            return Err(StudyError::NoTolerance);
-        };
+        let rays = settings.rays.as_ref();
+        let samples = rays.map_or(Ok(vec![]), |rays| rising(&rays.samples))?;
+        if tolerances.is_empty() && samples.is_empty() {
+            return Err(StudyError::Nothing);
+        }
+        let unit = tolerances.first().map(|&first| number_and_unit(first).1);
         // From loose to tight, so that what an allocator keeps of one says little of the next one's memory.
         let mut meshes = Vec::with_capacity(tolerances.len());
         for tolerance in tolerances {
-            let cost = mesh_cost::mesh_cost(scene, models, tolerance, settings)?;
-            done(&cost);
-            meshes.push(cost);
+            meshes.push(mesh_cost::mesh_cost(scene, models, tolerance, settings)?);
+            done();
         }
+        let stage = Stage::new(scene.clone(), models.to_vec());
+        let cameras = rays.map_or(&[][..], |rays| &rays.cameras);
+        let (pictures, rays) = match samples.is_empty() {
+            true => (None, vec![]),
+            false => {
+                let repeats = settings.repeats.get();
+                let (pictures, rays) =
+                    ray_cost::ray_costs(&stage, cameras, &samples, repeats, done)?;
+                (Some(pictures), rays)
+            }
+        };
         Ok(Self {
-            scene: Stage::new(scene.clone(), models.to_vec()).facts(),
-            unit: number_and_unit(first).1,
+            scene: stage.facts(),
+            unit,
             threads: rayon::current_num_threads(),
             repeats: settings.repeats.get(),
             samples: settings.samples.get(),
             meshes,
+            pictures,
+            rays,
         })
     }
 
@@ -179,6 +215,16 @@ fn in_order(tolerances: &[Tolerance]) -> Result<Vec<Tolerance>, StudyError> {
         }
     }
     Ok(sorted)
+}
+
+/// The fewest first.
+fn rising(samples: &[NonZeroU32]) -> Result<Vec<u32>, StudyError> {
+    let mut sorted: Vec<u32> = samples.iter().map(|samples| samples.get()).collect();
+    sorted.sort_unstable();
+    match sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Err(StudyError::RepeatedSamples(pair[0])),
+        None => Ok(sorted),
+    }
 }
 
 #[cfg(test)]
