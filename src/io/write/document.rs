@@ -94,14 +94,14 @@ impl<W: Write> Document<W> {
     /// Those of `make`.
     pub(super) fn shared<T: Send + Sync + 'static>(
         &mut self,
-        original: &Arc<[T]>,
+        original: &Arc<Vec<T>>,
         make: impl FnOnce(&mut Self) -> Result<Index<json::Accessor>, WriteError>,
     ) -> Result<Index<json::Accessor>, WriteError> {
         // What is not shared now never will be, and need not be kept in memory.
         if Arc::strong_count(original) == 1 {
             return make(self);
         }
-        let address = original.as_ptr() as usize;
+        let address = Arc::as_ptr(original) as usize;
         if let Some((_, accessor)) = self.shared.get(&address) {
             return Ok(*accessor);
         }
