@@ -1,5 +1,7 @@
 //! A triangle too thin to be triangulated on the sky.
 
+use glam::DVec3;
+
 use super::Allowance;
 use super::sky::{Corner, Pieces};
 
@@ -44,7 +46,8 @@ pub(super) fn strip(boundary: &[Corner], allowance: &Allowance) -> Pieces {
     };
     let (mut low, mut up) = (1, 1);
     let mut add = |triangle: [u32; 3]| {
-        pieces.measure(&triangle.map(|index| boundary[index as usize]), allowance);
+        let corners = triangle.map(|index| &boundary[index as usize]);
+        pieces.measure(corners, DVec3::ZERO, allowance);
         pieces.triangles.push(triangle);
     };
     add([lower[0], lower[1], upper[1]]);
