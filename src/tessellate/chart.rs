@@ -8,9 +8,10 @@ const MOST_MORE: f64 = 1e6;
 /// The plane of a triangle, with coordinates from the point nearest to the observer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
-    x: DVec3,
-    y: DVec3,
-    pub(super) normal: DVec3,
+    pub(super) x: DVec3,
+    pub(super) y: DVec3,
+    /// The unit normal that leads away from the observer.
+    pub(super) away: DVec3,
     /// Distance of the plane from the observer.
     pub(super) height: f64,
     /// Distance of the triangle from the observer.
@@ -32,11 +33,12 @@ impl Plane {
             .length_squared()
             .max((c - b).length_squared())
             .max((a - c).length_squared());
-        let height = a.dot(normal).abs();
+        let ahead = a.dot(normal);
+        let height = ahead.abs();
         (area > 1e-13 * longest).then(|| Self {
             x,
             y,
-            normal,
+            away: normal * 1f64.copysign(ahead),
             height,
             nearest: height.hypot(distance_from_origin(corners)),
             corners,

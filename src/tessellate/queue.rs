@@ -1,7 +1,7 @@
 //! A queue of faces that have to be divided, those of the least flaw first.
 
 /// Flaws between a power of two and the next are told apart in this many steps, as the first bits of a float.
-const STEP_BITS: u32 = 5;
+const STEP_BITS: u32 = 4;
 
 /// Smaller flaws are all alike.
 const LEAST: f32 = 1.0 / 16_777_216.0;

@@ -199,8 +199,10 @@ fn outcome(
     let mut points = vec![];
     for (number, side) in sides.into_iter().enumerate() {
         let (from, to) = (number, (number + 1) % 3);
-        let at = |weights: DVec3, position: DVec3, sides: u8| {
-            Corner::new(weights, position - observer, sides)
+        let at = |weights: DVec3, position: DVec3, sides: u8| Corner {
+            weights,
+            offset: position - observer,
+            sides,
         };
         let unit =
             |corner: usize| DVec3::from_array([0, 1, 2].map(|i| f64::from(u8::from(i == corner))));

@@ -17,7 +17,7 @@ use spade::{
     mitigate_underflow,
 };
 
-use super::along::gap_along;
+use super::along::{Spot, gap_along};
 use super::chart::{Chart, Plane};
 use super::gap::triangle_gap_place;
 use super::queue::{Queue, Task};
@@ -44,8 +44,6 @@ pub(super) struct Corner {
     pub(super) weights: DVec3,
     /// Offset from the observer.
     pub(super) offset: DVec3,
-    /// Distance from the observer.
-    pub(super) distance: f64,
     /// Bit `i` for a point on the side from corner `i` to the next; corners have two.
     pub(super) sides: u8,
 }
@@ -107,6 +105,16 @@ pub(super) fn divide(
     best.unwrap_or_else(|| strip(boundary, allowance))
 }
 
+/// A point to be added.
+struct New {
+    /// Where in the chart.
+    w: DVec2,
+    /// Weights of the triangle's corners.
+    weights: DVec3,
+    /// A vertex near it.
+    hint: FixedVertexHandle,
+}
+
 /// A triangulation that grows.
 struct Front<'a> {
     chart: Chart,
@@ -114,13 +122,15 @@ struct Front<'a> {
     observer: DVec3,
     allowance: &'a Allowance,
     triangulation: ConstrainedDelaunayTriangulation<Point2<f64>>,
-    /// Of the vertices of the triangulation, which are small and stay together so.
-    corners: Vec<Corner>,
+    /// What is known of the vertices of the triangulation, which are small and stay together so.
+    spots: Vec<Spot>,
+    /// And their weights of the triangle's corners.
+    weights: Vec<DVec3>,
     tasks: Queue,
     /// For each face how far its shortest edge is from the ideal length; NaN where nothing is to do. Tasks that
     /// say otherwise are out of date.
     flaws: Vec<(f32, FixedFaceHandle<InnerTag>)>,
-    boundary: usize,
+    boundary: &'a [Corner],
 }
 
 impl<'a> Front<'a> {
@@ -129,7 +139,7 @@ impl<'a> Front<'a> {
         chart: Chart,
         positions: [DVec3; 3],
         observer: DVec3,
-        boundary: &[Corner],
+        boundary: &'a [Corner],
         allowance: &'a Allowance,
     ) -> Option<Self> {
         let mut front = Self {
@@ -138,14 +148,18 @@ impl<'a> Front<'a> {
             observer,
             allowance,
             triangulation: ConstrainedDelaunayTriangulation::new(),
-            corners: boundary.to_vec(),
+            spots: boundary
+                .iter()
+                .map(|corner| Spot::new(&chart.plane, corner.offset))
+                .collect(),
+            weights: boundary.iter().map(|corner| corner.weights).collect(),
             tasks: Queue::new(),
             flaws: vec![],
-            boundary: boundary.len(),
+            boundary,
         };
         let mut handles = Vec::with_capacity(boundary.len());
-        for (index, &corner) in boundary.iter().enumerate() {
-            let w = chart.place_to_chart(chart.plane.place(corner.offset));
+        for index in 0..boundary.len() {
+            let w = chart.place_to_chart(front.spots[index].place);
             let handle = front.triangulation.insert(to_point(w)).ok()?;
             if handle.index() != index {
                 return None;
@@ -162,10 +176,10 @@ impl<'a> Front<'a> {
         let faces: Vec<_> = front
             .triangulation
             .inner_faces()
-            .map(|face| face.fix())
+            .map(|face| (face.fix(), face.vertices().map(|vertex| vertex.fix())))
             .collect();
-        for face in faces {
-            front.consider(face);
+        for (face, vertices) in faces {
+            front.consider(face, vertices);
         }
         Some(front)
     }
@@ -181,7 +195,7 @@ impl<'a> Front<'a> {
             if flaw != task.flaw {
                 continue;
             }
-            let Some((w, corner, hint)) = self.new_point(face) else {
+            let Some(New { w, weights, hint }) = self.new_point(face) else {
                 continue;
             };
             let count = self.triangulation.num_vertices();
@@ -191,19 +205,24 @@ impl<'a> Front<'a> {
             if self.triangulation.num_vertices() == count {
                 continue;
             }
-            self.corners.push(corner);
+            let offset = mix(self.positions, weights) - self.observer;
+            self.spots.push(Spot::new(&self.chart.plane, offset));
+            self.weights.push(weights);
             added += 1;
             let edges = self.triangulation.vertex(handle).out_edges();
-            around.extend(edges.filter_map(|edge| edge.face().as_inner().map(|face| face.fix())));
-            for face in around.drain(..) {
-                self.consider(face);
+            around.extend(edges.filter_map(|edge| {
+                let face = edge.face().as_inner()?.fix();
+                Some((face, [handle, edge.to().fix(), edge.next().to().fix()]))
+            }));
+            for (face, vertices) in around.drain(..) {
+                self.consider(face, vertices);
             }
         }
     }
 
     /// Sets a task if the face has too large a gap.
-    fn consider(&mut self, face: FixedFaceHandle<InnerTag>) {
-        let flaw = self.flaw(face);
+    fn consider(&mut self, face: FixedFaceHandle<InnerTag>, vertices: [FixedVertexHandle; 3]) {
+        let flaw = self.flaw(vertices);
         if self.flaws.len() <= face.index() {
             self.flaws.resize(face.index() + 1, (f32::NAN, face));
         }
@@ -216,27 +235,22 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// How far the shortest edge of a face with too large a gap is from the ideal length, as a ratio of squares, 1 or
-    /// more.
-    fn flaw(&self, face: FixedFaceHandle<InnerTag>) -> Option<f32> {
-        let vertices = self.triangulation.face(face).vertices();
-        let corners = vertices.map(|vertex| &self.corners[vertex.index()]);
-        if is_outside(corners) {
+    /// How far the shortest edge of a face with too large a gap is from the ideal length, as a part of it.
+    fn flaw(&self, vertices: [FixedVertexHandle; 3]) -> Option<f32> {
+        let indices = vertices.map(|vertex| vertex.index());
+        if self.is_outside(indices) {
             return None;
         }
-        let offsets = corners.map(|corner| corner.offset);
+        let spots = indices.map(|index| &self.spots[index]);
+        let offsets = spots.map(|spot| spot.offset);
         let allowed = self.allowance.between(&offsets);
-        let along = gap_along(
-            offsets,
-            corners.map(|corner| corner.distance),
-            self.chart.plane.normal,
-        );
+        let along = gap_along(&self.chart.plane, spots);
         let is_small = along.bound <= allowed
             || !along.is_sharp && triangle_gap(offsets[0], offsets[1], offsets[2]) <= allowed;
         if is_small {
             return None;
         }
-        let [a, b, c] = vertices.map(|vertex| to_vec(vertex.position()));
+        let [a, b, c] = vertices.map(|vertex| to_vec(self.triangulation.vertex(vertex).position()));
         let shortest = (b - a)
             .length_squared()
             .min((c - b).length_squared())
@@ -246,11 +260,15 @@ impl<'a> Front<'a> {
         Some(((shortest - ideal).abs() / shortest.min(ideal)) as f32)
     }
 
+    /// Three points on one side of the triangle: a face between the side and its arc in the chart.
+    fn is_outside(&self, vertices: [usize; 3]) -> bool {
+        // Points inside are on no side.
+        let sides = |vertex: usize| self.boundary.get(vertex).map_or(0, |corner| corner.sides);
+        sides(vertices[0]) & sides(vertices[1]) & sides(vertices[2]) != 0
+    }
+
     /// Where to add a point for a face: in front of its shortest edge, or else where its middle is; and a vertex near it.
-    fn new_point(
-        &self,
-        face: FixedFaceHandle<InnerTag>,
-    ) -> Option<(DVec2, Corner, FixedVertexHandle)> {
+    fn new_point(&self, face: FixedFaceHandle<InnerTag>) -> Option<New> {
         let vertices = self.triangulation.face(face).vertices();
         let hint = vertices[0].fix();
         let w = self.ideal_point(vertices.map(|vertex| to_vec(vertex.position())));
@@ -259,24 +277,27 @@ impl<'a> Front<'a> {
             if weights.min_element() > 0.0
                 && let Some(near) = self.room(w, hint)
             {
-                return Some((w, self.inner_corner(weights), near));
+                return Some(New {
+                    w,
+                    weights,
+                    hint: near,
+                });
             }
         }
         // Next to the boundary: where the gap is largest, or the middle where that is on the boundary itself.
-        let [a, b, c] = vertices.map(|vertex| &self.corners[vertex.index()]);
-        let [u, v, w] = triangle_gap_place(a.offset, b.offset, c.offset);
-        let worst = a.weights * u + b.weights * v + c.weights * w;
-        let middle = (a.weights + b.weights + c.weights) / 3.0;
+        let indices = vertices.map(|vertex| vertex.index());
+        let [a, b, c] = indices.map(|index| self.spots[index].offset);
+        let [u, v, w] = triangle_gap_place(a, b, c);
+        let [a, b, c] = indices.map(|index| self.weights[index]);
+        let worst = a * u + b * v + c * w;
         let weights = if worst.min_element() > 1e-9 {
             worst
         } else {
-            middle
+            (a + b + c) / 3.0
         };
-        let corner = self.inner_corner(weights);
-        let w = self
-            .chart
-            .place_to_chart(self.chart.plane.place(corner.offset));
-        (weights.min_element() > 0.0).then_some((w, corner, hint))
+        let offset = mix(self.positions, weights) - self.observer;
+        let w = self.chart.place_to_chart(self.chart.plane.place(offset));
+        (weights.min_element() > 0.0).then_some(New { w, weights, hint })
     }
 
     /// The point that makes an equilateral triangle of the ideal size on the shortest side of a
@@ -325,7 +346,7 @@ impl<'a> Front<'a> {
             PositionInTriangulation::OnFace(face) => {
                 let face = self.triangulation.face(face);
                 let vertices = face.vertices();
-                if is_outside(vertices.map(|vertex| &self.corners[vertex.index()])) {
+                if self.is_outside(vertices.map(|vertex| vertex.index())) {
                     return None;
                 }
                 let has_room = face
@@ -352,69 +373,46 @@ impl<'a> Front<'a> {
         mix(self.positions, weights) - self.observer
     }
 
-    fn inner_corner(&self, weights: DVec3) -> Corner {
-        let offset = mix(self.positions, weights) - self.observer;
-        Corner::new(weights, offset, 0)
-    }
-
     /// The triangles; `None` if one of them is turned over.
     fn finish(self) -> Option<Pieces> {
-        let inside = &self.corners[self.boundary..];
         let mut pieces = Pieces {
-            inside: inside.iter().map(|corner| corner.weights).collect(),
+            inside: self.weights[self.boundary.len()..].to_vec(),
             triangles: Vec::with_capacity(self.triangulation.num_inner_faces()),
             complete: true,
             ..Pieces::default()
         };
         for face in self.triangulation.inner_faces() {
-            let vertices = face.vertices();
-            let corners = vertices.map(|vertex| &self.corners[vertex.index()]);
-            if is_outside(corners) {
+            let vertices = face.vertices().map(|vertex| vertex.index());
+            if self.is_outside(vertices) {
                 continue;
             }
-            let [a, b, c] = corners.map(|corner| DVec2::new(corner.weights.y, corner.weights.z));
+            let [a, b, c] = vertices.map(|vertex| {
+                let weights = self.weights[vertex];
+                DVec2::new(weights.y, weights.z)
+            });
             if (b - a).perp_dot(c - a) <= 0.0 {
                 return None;
             }
-            pieces.measure(corners, self.chart.plane.normal, self.allowance);
-            pieces
-                .triangles
-                .push(vertices.map(|vertex| vertex.index() as u32));
+            let spots = vertices.map(|vertex| &self.spots[vertex]);
+            let offsets = spots.map(|spot| spot.offset);
+            // Most are known to be smaller than one that was met before.
+            let bound = gap_along(&self.chart.plane, spots).bound;
+            if !(bound <= pieces.gap && bound <= self.allowance.between(&offsets)) {
+                pieces.measure(offsets, self.allowance);
+            }
+            pieces.triangles.push(vertices.map(|vertex| vertex as u32));
         }
         Some(pieces)
     }
 }
 
-impl Corner {
-    pub(super) fn new(weights: DVec3, offset: DVec3, sides: u8) -> Self {
-        Self {
-            weights,
-            offset,
-            distance: offset.length(),
-            sides,
-        }
-    }
-}
-
 impl Pieces {
-    /// Takes the gap of one triangle into account; with its normal, if it has one, faster.
-    pub(super) fn measure(&mut self, corners: [&Corner; 3], normal: DVec3, allowance: &Allowance) {
-        let offsets = corners.map(|corner| corner.offset);
-        let allowed = allowance.between(&offsets);
-        // Most are known to be smaller than one that was met before.
-        let along = gap_along(offsets, corners.map(|corner| corner.distance), normal);
-        if along.bound <= self.gap && along.bound <= allowed {
-            return;
-        }
+    /// Takes the gap of one triangle into account.
+    pub(super) fn measure(&mut self, offsets: [DVec3; 3], allowance: &Allowance) {
         let gap = triangle_gap(offsets[0], offsets[1], offsets[2]);
         self.gap = self.gap.max(gap);
-        self.complete &= gap <= allowed;
+        self.complete &= gap <= allowance.between(&offsets);
     }
-}
-
-/// Three points on one side of the triangle: a face between the side and its arc in the chart.
-fn is_outside(corners: [&Corner; 3]) -> bool {
-    corners[0].sides & corners[1].sides & corners[2].sides != 0
 }
 
 fn mix([a, b, c]: [DVec3; 3], weights: DVec3) -> DVec3 {

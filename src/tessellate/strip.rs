@@ -1,7 +1,5 @@
 //! A triangle too thin to be triangulated on the sky.
 
-use glam::DVec3;
-
 use super::Allowance;
 use super::sky::{Corner, Pieces};
 
@@ -46,8 +44,8 @@ pub(super) fn strip(boundary: &[Corner], allowance: &Allowance) -> Pieces {
     };
     let (mut low, mut up) = (1, 1);
     let mut add = |triangle: [u32; 3]| {
-        let corners = triangle.map(|index| &boundary[index as usize]);
-        pieces.measure(corners, DVec3::ZERO, allowance);
+        let offsets = triangle.map(|index| boundary[index as usize].offset);
+        pieces.measure(offsets, allowance);
         pieces.triangles.push(triangle);
     };
     add([lower[0], lower[1], upper[1]]);
