@@ -122,3 +122,82 @@ pub(super) fn gap_along(plane: &Plane, [a, b, c]: [&Spot; 3]) -> Along {
         is_sharp: bound - least <= DOUBT * bound,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tessellate::triangle_gap;
+
+    /// Triangles of many sizes and shapes, near and far from the foot of the plane and far outside of it.
+    fn triangles() -> impl Iterator<Item = [DVec3; 3]> {
+        (0..4000).map(|step| {
+            let wave = |factor: f64| (f64::from(step) * factor).sin();
+            let place = DVec3::new(3.0 * wave(1.7), 3.0 * wave(0.9), 0.02 + wave(0.31).powi(2));
+            let size = 0.7f64.powi(step % 40);
+            let corner = |shift: f64| {
+                place + size * DVec3::new(wave(2.3 + shift), wave(1.1 + 2.0 * shift), wave(shift))
+            };
+            [corner(0.1), corner(0.57), corner(0.83)]
+        })
+    }
+
+    fn along(corners: [DVec3; 3]) -> Option<Along> {
+        let plane = Plane::new(corners)?;
+        let [a, b, c] = corners.map(|corner| Spot::new(&plane, corner));
+        Some(gap_along(&plane, [&a, &b, &c]))
+    }
+
+    /// The exact gap is known to be right, to 1e-12 for triangles like most of these.
+    #[test]
+    fn the_bound_is_above_the_gap_and_sharp_for_all_but_a_few() {
+        let (mut sharp, mut all) = (0, 0);
+        for corners in triangles() {
+            let Some(along) = along(corners) else {
+                continue;
+            };
+            let gap = triangle_gap(corners[0], corners[1], corners[2]);
+            assert!(
+                along.bound >= gap * (1.0 - 1e-10),
+                "{corners:?}: {along:?} {gap}"
+            );
+            all += 1;
+            if along.is_sharp {
+                sharp += 1;
+                assert!(
+                    along.bound <= gap * (1.0 + 2.0 * DOUBT),
+                    "{corners:?}: {along:?} {gap}"
+                );
+            }
+        }
+        assert!(all > 3900 && sharp > all * 9 / 10, "{sharp} of {all}");
+    }
+
+    /// A plane that is not that of the corners makes the bound worse, never wrong.
+    #[test]
+    fn the_bound_holds_for_whatever_plane() {
+        let mut different = 0;
+        for corners in triangles() {
+            let turned = corners.map(|corner| corner * 1.3 + DVec3::new(0.2, 0.0, corner.x * 0.01));
+            let Some(plane) = Plane::new(turned) else {
+                continue;
+            };
+            let [a, b, c] = corners.map(|corner| Spot::new(&plane, corner));
+            let bound = gap_along(&plane, [&a, &b, &c]).bound;
+            let gap = triangle_gap(corners[0], corners[1], corners[2]);
+            assert!(bound >= gap * (1.0 - 1e-10), "{corners:?}: {bound} {gap}");
+            different += usize::from(bound > gap * 1.001);
+        }
+        assert!(different > 1000, "{different}");
+    }
+
+    #[test]
+    fn what_is_no_number_or_beyond_squares_is_unknown() {
+        let corners = [DVec3::X, DVec3::Y, DVec3::Z];
+        let plane = Plane::new(corners).unwrap();
+        for place in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY, DVec3::X * 1e200] {
+            let [a, b, c] = [corners[0], corners[1], place].map(|corner| Spot::new(&plane, corner));
+            let along = gap_along(&plane, [&a, &b, &c]);
+            assert!(along.bound == f64::INFINITY && !along.is_sharp, "{place}");
+        }
+    }
+}
