@@ -9,12 +9,15 @@
 //! that neighbours always agree, bit for bit.
 
 mod allowance;
+mod along;
 mod ceiling;
 mod certificate;
+mod chart;
 mod edge;
 mod gap;
 mod minimum;
 mod nearest;
+mod queue;
 mod refine;
 mod sky;
 mod strip;
