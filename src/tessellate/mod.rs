@@ -31,4 +31,4 @@ use minimum::minimum_triangles;
 pub(crate) use minimum::predicted_pieces;
 pub(crate) use nearest::nearest_point;
 pub(crate) use refine::refine;
-pub(crate) use survey::{largest_gap, least_triangles};
+pub(crate) use survey::{largest_gap, survey};
