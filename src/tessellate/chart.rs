@@ -87,11 +87,7 @@ impl Chart {
     /// The square of the metric's factor: lengths in the chart times it are lengths in which a gap `e` is an
     /// edge of `sqrt(8 e)`.
     pub(super) fn metric(&self, w: DVec2) -> f64 {
-        self.metric_at_square(w.length_squared())
-    }
-
-    /// The same for the square of the distance from the middle of the chart, with which it grows.
-    pub(super) fn metric_at_square(&self, square: f64) -> f64 {
+        let square = w.length_squared();
         4.0 * self.height / (1.0 - square * square).max(f64::EPSILON)
     }
 }

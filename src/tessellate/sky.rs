@@ -28,10 +28,6 @@ use super::{Allowance, triangle_gap};
 /// have to fit between others.
 const AIM: f64 = 0.96;
 
-/// A face with a side whose square is so many times that of the ideal one is too large: the gap of a side of the ideal
-/// length is three quarters of what is aimed at.
-const FAR_TOO_LARGE: f64 = 3.0;
-
 /// A point this near to an edge of the boundary, against the edge's length, would make a flat triangle.
 const TOO_NEAR: f64 = 0.225;
 
@@ -250,27 +246,18 @@ impl<'a> Front<'a> {
         let allowed = self.allowance.between(&offsets);
         let [a, b, c] = vertices.map(|vertex| to_vec(self.triangulation.vertex(vertex).position()));
         let sides = [b - a, c - b, a - c].map(DVec2::length_squared);
-        // An equilateral triangle with the circumradius R, R^2 / 2 the gap of its middle, has the side sqrt(3) R.
-        let side_times_metric = 6.0 * AIM * allowed;
-
-        let longest = sides[0].max(sides[1]).max(sides[2]);
-        let squares = [a, b, c].map(DVec2::length_squared);
-        let least_metric = squares[0].min(squares[1]).min(squares[2]);
-        let least_metric = self.chart.metric_at_square(least_metric);
-        // What is too large mostly is so by far: with a side that alone has too large a gap, wherever it is.
-        if longest * least_metric < FAR_TOO_LARGE * side_times_metric {
-            let spots = indices.map(|index| &self.spots[index]);
-            let along = gap_along(&self.chart.plane, spots);
-            let is_small = along.bound <= allowed
-                || !along.is_sharp && triangle_gap(offsets[0], offsets[1], offsets[2]) <= allowed;
-            if is_small {
-                return None;
-            }
+        let spots = indices.map(|index| &self.spots[index]);
+        let along = gap_along(&self.chart.plane, spots);
+        let is_small = along.bound <= allowed
+            || !along.is_sharp && triangle_gap(offsets[0], offsets[1], offsets[2]) <= allowed;
+        if is_small {
+            return None;
         }
-        // Of any one corner. Always the newest makes 2 per cent more triangles of the plate at 0.001, the mean or the
+        // An equilateral triangle with the circumradius R, R^2 / 2 the gap of its middle, has the side sqrt(3) R. The
+        // metric is that of any one corner. Always the newest makes 2 per cent more triangles of the plate at 0.001, the mean or the
         // extreme of all three up to 8 per cent more at 0.1.
         let corner = (indices[0] + indices[1] + indices[2]) % 3;
-        let ideal = side_times_metric / self.chart.metric_at_square(squares[corner]);
+        let ideal = 6.0 * AIM * allowed / self.chart.metric([a, b, c][corner]);
         let shortest = sides[0].min(sides[1]).min(sides[2]);
         Some(((shortest - ideal).abs() / shortest.min(ideal)) as f32)
     }
