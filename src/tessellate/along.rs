@@ -170,7 +170,8 @@ mod tests {
                 );
             }
         }
-        assert!(all > 2000 && sharp > all / 4 * 3, "{sharp} of {all}");
+        // Most, or the exact gap would be asked for after all.
+        assert!(all > 2000 && sharp > all / 2, "{sharp} of {all}");
     }
 
     /// A plane that is not that of the corners makes the bound worse, never wrong.

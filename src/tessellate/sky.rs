@@ -254,8 +254,7 @@ impl<'a> Front<'a> {
             return None;
         }
         // An equilateral triangle with the circumradius R, R^2 / 2 the gap of its middle, has the side sqrt(3) R. The
-        // metric is that of any one corner. Always the newest makes 2 per cent more triangles of the plate at 0.001, the mean or the
-        // extreme of all three up to 8 per cent more at 0.1.
+        // metric is that of one corner, by chance: always the newest one would be the same side's too often.
         let corner = (indices[0] + indices[1] + indices[2]) % 3;
         let ideal = 6.0 * AIM * allowed / self.chart.metric([a, b, c][corner]);
         let shortest = sides[0].min(sides[1]).min(sides[2]);
