@@ -88,20 +88,7 @@ impl Mesh {
     /// A position that is not finite, an index out of range, too many vertices.
     pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         let vertices = positions.len();
-        if vertices > u32::MAX as usize {
-            return Err(MeshError::TooManyVertices(vertices));
-        }
-        let is_wrong = |corners: &[u32; 3]| corners.iter().any(|&i| i as usize >= vertices);
-        let jobs = triangles.par_iter().with_min_len(VALUES_PER_JOB);
-        if let Some(triangle) = jobs.position_first(is_wrong) {
-            let corners = triangles[triangle];
-            let index = corners.into_iter().find(|&i| i as usize >= vertices);
-            return Err(MeshError::Index {
-                triangle,
-                index: index.expect("one of them is"),
-                vertices,
-            });
-        }
+        check_triangles(&triangles, vertices)?;
         check("POSITION", &positions, vertices, |p| p.is_finite())?;
         Ok(Self {
             positions: positions.into(),
@@ -424,6 +411,25 @@ pub(crate) fn unit_or_zero(vector: DVec3) -> DVec3 {
         true => vector * square.sqrt().recip(),
         false => unit(vector).unwrap_or(DVec3::ZERO),
     }
+}
+
+/// Whether triangles use nothing but the vertices that there are.
+pub(crate) fn check_triangles(triangles: &[[u32; 3]], vertices: usize) -> Result<(), MeshError> {
+    if vertices > u32::MAX as usize {
+        return Err(MeshError::TooManyVertices(vertices));
+    }
+    let is_wrong = |corners: &[u32; 3]| corners.iter().any(|&i| i as usize >= vertices);
+    let jobs = triangles.par_iter().with_min_len(VALUES_PER_JOB);
+    let Some(triangle) = jobs.position_first(is_wrong) else {
+        return Ok(());
+    };
+    let mut corners = triangles[triangle].into_iter();
+    let index = corners.find(|&i| i as usize >= vertices);
+    Err(MeshError::Index {
+        triangle,
+        index: index.expect("one of them is"),
+        vertices,
+    })
 }
 
 fn check<T: std::fmt::Display + Sync>(
