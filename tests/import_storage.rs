@@ -242,7 +242,8 @@ fn a_normal_of_no_length_is_replaced_in_every_storage() {
     let mut content = Content::new();
     content.normals[content.indices[0] as usize] = [0.0; 3];
     let expected = content.read(REFERENCE).expect("a note and no error");
-    assert_eq!(expected.1.len(), 1, "{:?}", expected.1);
+    let noted = expected.1.iter().any(|note| note.contains("1 zero normal"));
+    assert!(noted, "{:?}", expected.1);
     for storage in storages() {
         assert!(
             content.read(storage).as_ref() == Ok(&expected),
