@@ -38,7 +38,7 @@ pub struct Mesh {
     texture_coordinates: Vec<Arc<Vec<Vec2>>>,
     colors: Option<Arc<Vec<Vec4>>>,
     /// Of the positions, once someone has asked.
-    bounds: Remembered<Option<(DVec3, DVec3)>>,
+    extent: Remembered<Option<Extent>>,
 }
 
 /// Why data does not make a [`Mesh`].
@@ -88,20 +88,7 @@ impl Mesh {
     /// A position that is not finite, an index out of range, too many vertices.
     pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         let vertices = positions.len();
-        if vertices > u32::MAX as usize {
-            return Err(MeshError::TooManyVertices(vertices));
-        }
-        let is_wrong = |corners: &[u32; 3]| corners.iter().any(|&i| i as usize >= vertices);
-        let jobs = triangles.par_iter().with_min_len(VALUES_PER_JOB);
-        if let Some(triangle) = jobs.position_first(is_wrong) {
-            let corners = triangles[triangle];
-            let index = corners.into_iter().find(|&i| i as usize >= vertices);
-            return Err(MeshError::Index {
-                triangle,
-                index: index.expect("one of them is"),
-                vertices,
-            });
-        }
+        check_triangles(&triangles, vertices)?;
         check("POSITION", &positions, vertices, |p| p.is_finite())?;
         Ok(Self {
             positions: positions.into(),
@@ -204,27 +191,21 @@ impl Mesh {
 
     /// The smallest and the largest corner of the box around the vertices; `None` without vertices.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let around = |positions: &[DVec3]| {
-            let first = positions[0];
-            let corners = positions
-                .iter()
-                .fold((first, first), |(low, high), &p| (low.min(p), high.max(p)));
-            corners
-        };
-        *self.bounds.0.get_or_init(|| {
-            // The same jobs for any number of threads, for which of 0 and -0 is less depends on their order.
-            let jobs = self.positions.par_chunks(VALUES_PER_JOB).map(around);
-            let boxes: Vec<_> = jobs.collect();
-            boxes
-                .into_iter()
-                .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
-        })
+        self.extent().map(|extent| (extent.low, extent.high))
     }
 
     /// Whether all vertices are somewhere, which only a transform can change.
     pub(crate) fn is_finite(&self) -> bool {
-        let jobs = self.positions.par_iter().with_min_len(VALUES_PER_JOB);
-        jobs.all(|position| position.is_finite())
+        self.extent().is_none_or(|extent| extent.is_finite)
+    }
+
+    fn extent(&self) -> Option<Extent> {
+        *self.extent.0.get_or_init(|| {
+            // The same jobs for any number of threads, for which of 0 and -0 is less depends on their order.
+            let jobs = self.positions.par_chunks(VALUES_PER_JOB).map(Extent::of);
+            let extents: Vec<Extent> = jobs.collect();
+            extents.into_iter().reduce(Extent::with)
+        })
     }
 
     /// The mesh moved, turned, scaled or mirrored; mirrored triangles keep their outside.
@@ -233,7 +214,7 @@ impl Mesh {
         if *transform == DAffine3::IDENTITY {
             return self;
         }
-        self.bounds = Remembered::default();
+        self.extent = Remembered::default();
         change_shared(&mut self.positions, |position| {
             transform.transform_point3(position)
         });
@@ -285,7 +266,7 @@ impl Mesh {
             tangents: tangents.map(Into::into),
             texture_coordinates: texture_coordinates.into_iter().map(Into::into).collect(),
             colors: colors.map(Into::into),
-            bounds: Remembered::default(),
+            extent: Remembered::default(),
         }
     }
 
@@ -304,7 +285,7 @@ impl Mesh {
             tangents: tangents.map(Into::into),
             texture_coordinates: self.texture_coordinates.clone(),
             colors: self.colors.clone(),
-            bounds: Remembered::default(),
+            extent: Remembered::default(),
         }
     }
 
@@ -344,8 +325,40 @@ impl Mesh {
                 .map(|set| pick(set, corners))
                 .collect(),
             colors: self.colors.as_ref().map(|colors| pick(colors, corners)),
-            bounds: Remembered::default(),
+            extent: Remembered::default(),
         })
+    }
+}
+
+/// Where some positions are.
+#[derive(Clone, Copy, Debug)]
+struct Extent {
+    low: DVec3,
+    high: DVec3,
+    is_finite: bool,
+}
+
+impl Extent {
+    fn of(positions: &[DVec3]) -> Self {
+        let first = Self::of_one(positions[0]);
+        let others = positions.iter().copied().map(Self::of_one);
+        others.fold(first, Self::with)
+    }
+
+    fn of_one(position: DVec3) -> Self {
+        Self {
+            low: position,
+            high: position,
+            is_finite: position.is_finite(),
+        }
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+            is_finite: self.is_finite & other.is_finite,
+        }
     }
 }
 
@@ -388,15 +401,35 @@ fn change_shared<T: Copy + Send + Sync>(values: &mut Arc<Vec<T>>, new: impl Fn(T
 
 /// A vector brought to unit length, or zero where there is none.
 ///
-/// Where nothing overflows and nothing is lost below the smallest numbers, a square root and divisions are as good
-/// as the detour by powers of two.
+/// Where nothing overflows and nothing is lost below the smallest numbers, a root does without the detour by powers
+/// of two and is as good.
+#[inline]
 pub(crate) fn unit_or_zero(vector: DVec3) -> DVec3 {
     const ORDINARY: std::ops::Range<f64> = 1e-100..1e100;
     let square = vector.length_squared();
     match ORDINARY.contains(&square) {
-        true => vector / square.sqrt(),
+        true => vector * square.sqrt().recip(),
         false => unit(vector).unwrap_or(DVec3::ZERO),
     }
+}
+
+/// Whether triangles use nothing but the vertices that there are.
+pub(crate) fn check_triangles(triangles: &[[u32; 3]], vertices: usize) -> Result<(), MeshError> {
+    if vertices > u32::MAX as usize {
+        return Err(MeshError::TooManyVertices(vertices));
+    }
+    let is_wrong = |corners: &[u32; 3]| corners.iter().any(|&i| i as usize >= vertices);
+    let jobs = triangles.par_iter().with_min_len(VALUES_PER_JOB);
+    let Some(triangle) = jobs.position_first(is_wrong) else {
+        return Ok(());
+    };
+    let mut corners = triangles[triangle].into_iter();
+    let index = corners.find(|&i| i as usize >= vertices);
+    Err(MeshError::Index {
+        triangle,
+        index: index.expect("one of them is"),
+        vertices,
+    })
 }
 
 fn check<T: std::fmt::Display + Sync>(
@@ -420,5 +453,84 @@ fn check<T: std::fmt::Display + Sync>(
             value: values[vertex].to_string(),
         }),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sheet() -> Mesh {
+        let position = |i: u32| DVec3::new((f64::from(i) * 0.37).sin(), f64::from(i), 1.0);
+        let positions: Vec<DVec3> = (0..10_000).map(position).collect();
+        let normals = positions.clone();
+        let triangles = (0..9_998).map(|i| [i, i + 1, i + 2]).collect();
+        let mesh = Mesh::new(positions, triangles).unwrap();
+        mesh.with_normals(normals).unwrap()
+    }
+
+    /// In units of rounding, half of `EPSILON`: the square of the length is off by at most 3, its root by 2.5, the
+    /// reciprocal by 3.5, the result by 4.5; the long way has one division more and takes the length of its
+    /// result: 5.5. The length found of a unit vector is off by another 2.5.
+    #[test]
+    fn the_short_way_to_a_unit_vector_is_as_good_as_the_long_one() {
+        for i in 0..100_000u32 {
+            let angle = f64::from(i) * 0.618;
+            let scale = 10f64.powi((i % 120) as i32 - 60);
+            let vector = DVec3::new(angle.sin(), (3.1 * angle).cos(), (7.7 * angle).sin()) * scale;
+            let (short, long) = (unit_or_zero(vector), unit(vector).unwrap());
+            assert!((short - long).abs().max_element() <= 5.0 * f64::EPSILON);
+            assert!((short.length() - 1.0).abs() <= 3.5 * f64::EPSILON);
+        }
+        assert_eq!(unit_or_zero(DVec3::ZERO), DVec3::ZERO);
+        assert_eq!(unit_or_zero(DVec3::X * 1e-310), DVec3::X);
+        assert_eq!(unit_or_zero(DVec3::NEG_Y * 1e300), DVec3::NEG_Y);
+    }
+
+    #[test]
+    fn bounds_are_those_of_all_vertices() {
+        let mesh = sheet();
+        let first = mesh.positions()[0];
+        let fold = |corner: fn(DVec3, DVec3) -> DVec3| {
+            let positions = mesh.positions().iter().copied();
+            positions.fold(first, corner)
+        };
+        let expected = Some((fold(DVec3::min), fold(DVec3::max)));
+        assert_eq!(mesh.bounds(), expected);
+        let moved = mesh.transformed(&DAffine3::from_translation(DVec3::X));
+        let corners = expected.map(|(low, high)| (low + DVec3::X, high + DVec3::X));
+        assert_eq!(moved.bounds(), corners);
+        assert_eq!(Mesh::default().bounds(), None);
+    }
+
+    #[test]
+    fn what_is_moved_leaves_its_original_where_it_is() {
+        let original = sheet();
+        let turn = DAffine3::from_rotation_z(0.3);
+        let mirror = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+        for transform in [turn, mirror, DAffine3::from_translation(DVec3::Y)] {
+            let copy = original.clone();
+            assert_eq!(original.positions().as_ptr(), copy.positions().as_ptr());
+            let moved = copy.transformed(&transform);
+            assert_eq!(original, sheet());
+            // The same as of a mesh that nobody shares.
+            assert_eq!(moved, sheet().transformed(&transform));
+            assert_eq!(
+                moved.positions()[77],
+                transform.transform_point3(original.positions()[77])
+            );
+        }
+        let same = original.clone().transformed(&DAffine3::IDENTITY);
+        assert_eq!(original.positions().as_ptr(), same.positions().as_ptr());
+    }
+
+    #[test]
+    fn a_vertex_that_a_transform_makes_nothing_of_is_noticed() {
+        let far = Mesh::new(vec![DVec3::ZERO, DVec3::splat(1e300)], vec![]).unwrap();
+        assert!(far.is_finite());
+        let mut transform = DAffine3::from_scale(DVec3::new(1.0, 1e300, 1.0));
+        transform.matrix3.x_axis.y = -1e300;
+        // Infinity less infinity, which bounds need not show.
+        assert!(!far.transformed(&transform).is_finite());
     }
 }

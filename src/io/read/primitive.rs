@@ -17,7 +17,7 @@ use super::normals::replace_zero_normals;
 use super::note::{Note, add_note};
 use super::run::Run;
 use super::{AccessorProblem, ReadError};
-use crate::mesh::{Mesh, unit_or_zero};
+use crate::mesh::{Mesh, check_triangles, unit_or_zero};
 
 const VECTOR: Expected = Expected {
     types: &[Type::Vec3],
@@ -69,7 +69,8 @@ pub(super) struct Shape {
     pub(super) tangents: Option<Vec<DVec4>>,
     /// Whether the triangles have come to face the other way.
     pub(super) mirrored: bool,
-    /// Whether all positions and normals were seen to be finite, and the normals brought to unit length.
+    /// Whether all positions and normals were seen to be finite, and the normals brought to unit length, each of
+    /// which has one.
     pub(super) is_sound: bool,
 }
 
@@ -122,15 +123,15 @@ pub(super) fn read_primitive(
         corners.for_each(|corners| corners.swap(1, 2));
     }
     let vertices = shape.positions.len();
-    let is_sound = shape.is_sound && triangles.are_sound;
     let wrong = |problem| ReadError::Mesh {
         place: source.place.clone(),
         problem,
     };
-    let mut mesh = if is_sound {
-        let Shape {
-            positions, normals, ..
-        } = shape;
+    if !triangles.are_sound {
+        check_triangles(&triangles.corners, vertices).map_err(wrong)?;
+    }
+    let mut mesh = if shape.is_sound {
+        let (positions, normals) = (shape.positions, shape.normals);
         Mesh::from_parts(positions, triangles.corners, normals, None, vec![], None)
     } else {
         let mesh = Mesh::new(shape.positions, triangles.corners).map_err(wrong)?;
@@ -157,7 +158,7 @@ pub(super) fn read_primitive(
         mesh = clamp_colors(mesh, source, notes).map_err(wrong)?;
     }
     source.note_attributes(sets, notes);
-    let (mesh, replaced) = match is_sound {
+    let (mesh, replaced) = match shape.is_sound {
         true => (mesh, 0),
         false => replace_zero_normals(mesh),
     };
