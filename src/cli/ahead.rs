@@ -6,8 +6,9 @@ use std::sync::mpsc::{Receiver, sync_channel};
 
 use photosurface::{Photosurface, Stage, Wanted, WriteError};
 
-/// Triangles of steps that are made ahead, about: enough to keep cores busy, a few tens of megabytes at most.
-const MADE_AHEAD: usize = 200_000;
+/// Triangles of steps that are made ahead, about, where that is more than one step: enough to keep cores busy, and a
+/// few megabytes, so that many steps take hardly more memory than two.
+const MADE_AHEAD: usize = 100_000;
 
 /// Steps of more triangles are made one after the other: what is written of them is little against what they take to
 /// make, in which all cores take part, and in memory.
