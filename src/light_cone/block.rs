@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 
-use super::plain::{PlainMap, is_plain, size};
+use super::plain::{PlainMap, Sighting, forwardness, is_plain, size};
 use super::{Extremes, View};
 use crate::spacetime::exact::Product;
 
-/// Points that are taken at a time: enough for the longest vectors, few enough for the nearest cache.
-pub(super) const BLOCK: usize = 64;
+/// Points that are taken at a time: enough for the longest vectors, few enough that reading the next ones and computing
+/// overlap.
+pub(super) const BLOCK: usize = 32;
 
 /// A number for each point of a block.
 type Numbers = [f64; BLOCK];
@@ -26,20 +27,16 @@ impl Columns {
         z: [0.0; BLOCK],
     };
 
-    /// The last vector again where there are too few: it changes nothing that all have in common.
     #[inline(always)]
-    fn load(vectors: &[DVec3]) -> Self {
-        let mut columns = Self::ZERO;
-        let last = vectors.last().copied().unwrap_or_default();
-        for index in 0..BLOCK {
-            columns.set(index, *vectors.get(index).unwrap_or(&last));
+    fn load(&mut self, vectors: &[DVec3; BLOCK]) {
+        for (index, &vector) in vectors.iter().enumerate() {
+            self.set(index, vector);
         }
-        columns
     }
 
     #[inline(always)]
-    pub(super) fn store(&self, vectors: &mut [DVec3]) {
-        for (index, vector) in vectors.iter_mut().enumerate().take(BLOCK) {
+    pub(super) fn store(&self, vectors: &mut [DVec3; BLOCK]) {
+        for (index, vector) in vectors.iter_mut().enumerate() {
             *vector = self.get(index);
         }
     }
@@ -61,46 +58,60 @@ impl Columns {
     }
 }
 
-/// How the points of a block are seen.
+/// How the points of a block are seen. One for all blocks: to make it anew takes as long as to use it.
 pub(super) struct Block {
-    size: Numbers,
-    square_rest: Numbers,
+    rest: Columns,
     pub(super) position: Columns,
+    pub(super) normal: Columns,
     distance: Numbers,
-    forwardness_squared: Numbers,
-    toward_across: Columns,
-    doppler_factor: Numbers,
+    lean: Numbers,
+    across: Columns,
+    distance_at_rest: Numbers,
+    square_rest: Numbers,
+    /// Of the offsets.
+    size: Numbers,
 }
 
 impl Block {
+    pub(super) const ZERO: Self = Self {
+        rest: Columns::ZERO,
+        position: Columns::ZERO,
+        normal: Columns::ZERO,
+        distance: [0.0; BLOCK],
+        lean: [0.0; BLOCK],
+        across: Columns::ZERO,
+        distance_at_rest: [0.0; BLOCK],
+        square_rest: [0.0; BLOCK],
+        size: [0.0; BLOCK],
+    };
+
+    /// Without `ALL` the positions alone.
     #[inline(always)]
-    pub(super) fn seen<P: Product>(view: &View, plain: &PlainMap, rest: &[DVec3]) -> Self {
+    pub(super) fn see<P: Product, const ALL: bool>(
+        &mut self,
+        view: &View,
+        plain: &PlainMap,
+        rest: &[DVec3; BLOCK],
+    ) {
         let (observer, turn) = (view.observer_rest(), view.turn());
-        let rest = Columns::load(rest);
-        let mut block = Self {
-            size: [0.0; BLOCK],
-            square_rest: [0.0; BLOCK],
-            position: Columns::ZERO,
-            distance: [0.0; BLOCK],
-            forwardness_squared: [0.0; BLOCK],
-            toward_across: Columns::ZERO,
-            doppler_factor: [0.0; BLOCK],
-        };
+        self.rest.load(rest);
         for index in 0..BLOCK {
-            let rest = rest.get(index);
+            let rest = self.rest.get(index);
             let offset = rest - observer;
             let sighting = plain.see::<P>(offset);
-            block.size[index] = size(offset);
-            block.square_rest[index] = rest.length_squared();
-            block.position.set(index, turn * sighting.position);
-            block.distance[index] = sighting.distance;
-            block.forwardness_squared[index] = sighting.forwardness_squared;
-            block.toward_across.set(index, sighting.toward_across);
-            block.doppler_factor[index] = sighting.doppler_factor;
+            self.position.set(index, turn * sighting.position);
+            self.size[index] = size(offset);
+            if ALL {
+                self.distance[index] = sighting.distance;
+                self.lean[index] = sighting.lean;
+                self.across.set(index, sighting.across);
+                self.distance_at_rest[index] = sighting.distance_at_rest;
+                self.square_rest[index] = rest.length_squared();
+            }
         }
-        block
     }
 
+    /// Whether no point is tiny or huge; else all the rest means nothing.
     #[inline(always)]
     pub(super) fn is_plain(&self) -> bool {
         let mut others = 0;
@@ -110,17 +121,22 @@ impl Block {
         others == 0
     }
 
+    /// The normals there of a surface with these at rest.
     #[inline(always)]
-    pub(super) fn normals(&self, view: &View, plain: &PlainMap, rest: &[DVec3]) -> Columns {
+    pub(super) fn see_normals(&mut self, view: &View, plain: &PlainMap, rest: &[DVec3; BLOCK]) {
         let turn = view.turn();
-        let mut columns = Columns::load(rest);
+        self.rest.load(rest);
         for index in 0..BLOCK {
-            let (toward_across, doppler_factor) =
-                (self.toward_across.get(index), self.doppler_factor[index]);
-            let normal = plain.seen_normal(toward_across, doppler_factor, columns.get(index));
-            columns.set(index, turn * normal);
+            let sighting = Sighting {
+                position: self.position.get(index),
+                distance: self.distance[index],
+                lean: self.lean[index],
+                across: self.across.get(index),
+                distance_at_rest: self.distance_at_rest[index],
+            };
+            let normal = plain.seen_normal(&sighting, self.rest.get(index));
+            self.normal.set(index, turn * normal);
         }
-        columns
     }
 }
 
@@ -131,7 +147,7 @@ pub(super) struct Accumulated {
     nearest: Numbers,
     farthest: Numbers,
     square_rest: Numbers,
-    forwardness_squared: Numbers,
+    lean: Numbers,
 }
 
 impl Accumulated {
@@ -148,7 +164,7 @@ impl Accumulated {
             nearest: all(f64::INFINITY),
             farthest: all(0.0),
             square_rest: all(0.0),
-            forwardness_squared: all(0.0),
+            lean: all(0.0),
         }
     }
 
@@ -163,7 +179,7 @@ impl Accumulated {
         lower(&mut self.nearest, &block.distance);
         raise(&mut self.farthest, &block.distance);
         raise(&mut self.square_rest, &block.square_rest);
-        raise(&mut self.forwardness_squared, &block.forwardness_squared);
+        raise(&mut self.lean, &block.lean);
     }
 
     pub(super) fn extremes(&self) -> Extremes {
@@ -178,7 +194,7 @@ impl Accumulated {
             nearest: least(&self.nearest),
             farthest: most(&self.farthest),
             farthest_rest: most(&self.square_rest).sqrt(),
-            forwardness: most(&self.forwardness_squared).sqrt(),
+            forwardness: forwardness(most(&self.lean)),
         }
     }
 }

@@ -293,8 +293,7 @@ impl PhotosurfaceMap {
     pub fn seen_normal(&self, offset_rest: DVec3, normal_rest: DVec3) -> DVec3 {
         match &self.plain {
             Some(plain) if is_plain(size(offset_rest)) && is_plain(size(normal_rest)) => {
-                let seen = plain.see::<Split>(offset_rest);
-                return plain.seen_normal(seen.toward_across, seen.doppler_factor, normal_rest);
+                return plain.seen_normal(&plain.see::<Split>(offset_rest), normal_rest);
             }
             _ => {}
         }

@@ -31,11 +31,11 @@ pub(super) struct Sighting {
     pub(super) position: DVec3,
     /// How far away: `|position|`.
     pub(super) distance: f64,
-    /// `w / u`, the square of the cotangent of half the angle from the direction of motion.
-    pub(super) forwardness_squared: f64,
-    /// The part across the motion of the direction in which the point is at rest.
-    pub(super) toward_across: DVec3,
-    pub(super) doppler_factor: f64,
+    /// From 0 straight behind to 2 straight ahead: see [`forwardness`].
+    pub(super) lean: f64,
+    /// At rest: the part of the offset across the motion, and its length.
+    pub(super) across: DVec3,
+    pub(super) distance_at_rest: f64,
 }
 
 impl PlainMap {
@@ -68,7 +68,9 @@ impl PlainMap {
         let parallel = self.direction.dot(offset);
         let distance_at_rest = (parallel * parallel + across_squared).sqrt();
         let larger = distance_at_rest + parallel.abs();
-        let smaller = across_squared / larger;
+        let inverse = larger.recip();
+        let smaller = across_squared * inverse;
+        let ratio = smaller * inverse;
         let ahead = parallel > 0.0;
         let (w, u) = if ahead {
             (larger, smaller)
@@ -76,8 +78,6 @@ impl PlainMap {
             (smaller, larger)
         };
         let (seen_w, seen_u) = (w * self.stretch, u * self.squeeze);
-        let distance = 0.5 * (seen_w + seen_u);
-        let inverse_distance = distance_at_rest.recip();
         let position = across + self.direction * (0.5 * (seen_w - seen_u));
         Sighting {
             // At rest everything is where it is, to the last bit.
@@ -86,10 +86,10 @@ impl PlainMap {
             } else {
                 position
             },
-            distance,
-            forwardness_squared: w / u,
-            toward_across: across * inverse_distance,
-            doppler_factor: distance * inverse_distance,
+            distance: 0.5 * (seen_w + seen_u),
+            lean: if ahead { 2.0 - ratio } else { ratio },
+            across,
+            distance_at_rest,
         }
     }
 
@@ -100,12 +100,10 @@ impl PlainMap {
     ///
     /// That of [`PhotosurfaceMap::seen_normal`](super::PhotosurfaceMap::seen_normal).
     #[inline(always)]
-    pub(super) fn seen_normal(
-        &self,
-        toward_across: DVec3,
-        doppler_factor: f64,
-        normal_rest: DVec3,
-    ) -> DVec3 {
+    pub(super) fn seen_normal(&self, sighting: &Sighting, normal_rest: DVec3) -> DVec3 {
+        let inverse_distance = sighting.distance_at_rest.recip();
+        let doppler_factor = sighting.distance * inverse_distance;
+        let toward_across = sighting.across * inverse_distance;
         let along = self.direction.dot(normal_rest);
         let across = normal_rest - self.direction * along;
         let normal =
@@ -114,6 +112,16 @@ impl PlainMap {
         // A zero vector times a finite number stays zero.
         let square = if square > 0.0 { square } else { 1.0 };
         normal * square.sqrt().recip()
+    }
+}
+
+/// `sqrt(w / u)`, the cotangent of half the angle from the direction of motion, from `w / u` below 1 and `2 - u / w`
+/// above: they grow together, and no digit is lost near straight behind, where stretching depends on it.
+pub(super) fn forwardness(lean: f64) -> f64 {
+    if lean <= 1.0 {
+        lean.sqrt()
+    } else {
+        (2.0 - lean).sqrt().recip()
     }
 }
 

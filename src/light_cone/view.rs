@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-use super::{Batch, PhotosurfaceMap};
+use super::PhotosurfaceMap;
 use crate::spacetime::{Event, Lorentz, Velocity, WorldLine, length};
 
 /// How an observer sees, at one event, everything that moves with one velocity.
@@ -98,24 +98,6 @@ impl View {
     /// Where the point `position_rest` is seen, in the observer's frame.
     pub fn seen_position(&self, position_rest: DVec3) -> DVec3 {
         self.turned(self.map.seen_position(self.offset(position_rest)))
-    }
-
-    /// Where all points of `positions_rest` are seen, in the observer's frame: as [`View::seen_position`] of each, in a
-    /// fraction of the time (`cargo bench --bench bandwidth`).
-    ///
-    /// # Accuracy
-    ///
-    /// The same, bit for bit, but for points with a coordinate other than zero below `1e-250`.
-    ///
-    /// # Panics
-    ///
-    /// If there are not as many places in `seen` as points.
-    pub fn seen_positions(&self, positions_rest: &[DVec3], seen: &mut [DVec3]) {
-        self.see(Batch {
-            rest: positions_rest,
-            seen,
-            normals: None,
-        });
     }
 
     /// The unit normal there of a surface with the normal `normal_rest` at rest.
