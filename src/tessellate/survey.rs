@@ -128,13 +128,13 @@ impl NullaryFnOnce for Block<'_> {
                 offsets[2][index] = offset.z;
             }
         }
-        for index in 0..BLOCK {
+        for (index, known) in self.known.iter_mut().enumerate() {
             let corner = |corner: usize| DVec3 {
                 x: offsets[corner][0][index],
                 y: offsets[corner][1][index],
                 z: offsets[corner][2][index],
             };
-            self.known[index] = ceilings([corner(0), corner(1), corner(2)]);
+            *known = ceilings([corner(0), corner(1), corner(2)]);
         }
     }
 }
