@@ -405,3 +405,25 @@ fn what_is_beyond_the_corners_is_rounded_too() {
         assert!(made.rounding > 0.2 * tolerance && made.complete, "{made:?}");
     }
 }
+
+/// Far away the closed form of a gap has a floor, 1e-160 of the distance: at 1e300 that was more than any tolerance, and
+/// a mesh of 2,560 triangles was refined until memory ran out. What is as small as that on the sky needs no refinement.
+#[test]
+fn what_is_farther_away_than_digits_reach_is_left_as_it_is() {
+    let workplace = Workplace::new();
+    workplace
+        .run("export --beta 0 --steps 0 --example sphere --tolerance 1e-2 -o ball.glb")
+        .success();
+    for distance in ["1e120", "1e160", "1e200", "1e300"] {
+        let line = format!(
+            "export ball.glb --observer {distance},0,0 --beta 0.5 -o out.ply --report report.json"
+        );
+        let run = workplace.run(&line);
+        // Not certified: the digits of the place are not enough.
+        assert_eq!(run.status, 1, "{run}");
+        assert!(!run.stderr.contains("would fit"), "{run}");
+        let certificate = &workplace.read_json("report.json")["objects"][0]["certificate"];
+        assert_eq!(certificate["triangles_in"], certificate["triangles_out"]);
+        assert!(certificate["gap"].as_f64() < Some(1e-100), "{certificate}");
+    }
+}
