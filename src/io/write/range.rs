@@ -24,13 +24,35 @@ impl Format {
             for photosurface in stage.photosurfaces(step, wanted) {
                 let (name, mesh) = (&photosurface.facts.name, &photosurface.mesh);
                 match self {
-                    Self::Glb | Self::Gltf => drop(pack(name, &[mesh.positions()])?),
+                    Self::Glb | Self::Gltf => pack(name, &[mesh.positions()])
+                        .map(drop)
+                        .map_err(|error| by_cause(error, photosurface.facts.relative_rapidity))?,
                     Self::Ply => check_positions(name, mesh)?,
                 }
                 Layer::from(&photosurface).scalars(wanted.attributes)?;
             }
         }
         Ok(())
+    }
+}
+
+/// Whether it is the speed that makes a position so large: a boost makes it `exp(rapidity)` times as large at most.
+fn by_cause(error: WriteError, rapidity: f64) -> WriteError {
+    match error {
+        WriteError::Range {
+            name,
+            quantity,
+            vertex,
+            value,
+            limit,
+        } if value.abs() / rapidity.exp() > limit => WriteError::TooFar {
+            name,
+            quantity,
+            vertex,
+            value,
+            limit,
+        },
+        error => error,
     }
 }
 
@@ -71,7 +93,13 @@ mod tests {
             (
                 r#"{ "beta": 0.5 }"#,
                 "1e45",
-                Some("the position of vertex"),
+                Some("it is too far away; choose a smaller distance"),
+                None,
+            ),
+            (
+                r#"{ "rapidity": 100 }"#,
+                "1",
+                Some("choose a smaller rapidity"),
                 None,
             ),
         ] {
