@@ -128,7 +128,7 @@ struct OutputArgs {
     /// slope of theory: .png or .svg
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// Size of the plot in pixels, from 320x200 to 8192x8192 [default: 960x400, or 960x780 for both]
+    /// Size of the plot in pixels, from 640x480 to 8192x8192 [default: 960x480, or 960x780 for both]
     #[arg(long, value_name = "WxH", value_parser = plot_size)]
     plot_size: Option<PlotSize>,
 }
@@ -177,7 +177,7 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     // The plot may fail: nothing is written before it is there.
     let plot_size = match output.plot_size {
         Some(size) => size,
-        None => PlotSize::new(960, if only.is_none() { 780 } else { 400 })?,
+        None => PlotSize::new(960, if only.is_none() { 780 } else { 480 })?,
     };
     let plot = picture.map(|(path, picture)| {
         let drawn = match picture {
@@ -324,11 +324,11 @@ fn pixel_samples(text: &str) -> anyhow::Result<NonZeroU32> {
     number.with_context(|| format!("\"{text}\" is no number of rays, expected 1 to 16"))
 }
 
-/// `960x400`
+/// `960x480`
 fn plot_size(text: &str) -> anyhow::Result<PlotSize> {
     let sides = text
         .split_once('x')
-        .context("expected WxH, such as 960x400")?;
+        .context("expected WxH, such as 960x480")?;
     let pixels = |side: &str| {
         side.parse::<u32>()
             .with_context(|| format!("\"{side}\" is no number of pixels"))
@@ -343,14 +343,14 @@ mod tests {
     #[test]
     fn sizes_of_plots_are_read_as_people_write_them() {
         assert_eq!(
-            plot_size("960x400").unwrap(),
-            PlotSize::new(960, 400).unwrap()
+            plot_size("960x480").unwrap(),
+            PlotSize::new(960, 480).unwrap()
         );
         for wrong in [
             "",
             "960",
             "960x",
-            "960x400x2",
+            "960x480x2",
             "0x0",
             "9.5x400",
             "10000x400",
