@@ -36,7 +36,8 @@ impl Format {
     }
 }
 
-/// Whether it is the speed that makes a position so large: a boost makes it `exp(rapidity)` times as large at most.
+/// Whether it is the speed that makes a position so large: it makes the way to the step `exp(rapidity)` times as long at
+/// most, and what is seen there as many times as large again.
 fn by_cause(error: WriteError, rapidity: f64) -> WriteError {
     match error {
         WriteError::Range {
@@ -45,7 +46,7 @@ fn by_cause(error: WriteError, rapidity: f64) -> WriteError {
             vertex,
             value,
             limit,
-        } if value.abs() / rapidity.exp() > limit => WriteError::TooFar {
+        } if value.abs() / rapidity.exp().powi(2) > limit => WriteError::TooFar {
             name,
             quantity,
             vertex,
