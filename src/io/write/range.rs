@@ -98,7 +98,7 @@ mod tests {
                 None,
             ),
             (
-                r#"{ "rapidity": 100 }"#,
+                r#"{ "rapidity": 60 }"#,
                 "1",
                 Some("choose a smaller rapidity"),
                 None,
