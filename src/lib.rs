@@ -30,10 +30,10 @@ mod tessellate;
 pub use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4, Vec2, Vec4};
 
 pub use io::{
-    AccessorProblem, DocumentProblem, Export, FileFindings, Findings, Format, GltfFile, LoadError,
-    NodeProblem, Note, ObjProblem, Playback, ReadError, Report, StageTime, UriProblem, WriteError,
-    abandon_writes, destination, load_models, read_gltf_bytes, read_model, write_glb, write_gltf,
-    write_ply, write_whole,
+    AccessorProblem, DocumentProblem, Export, FileFindings, Findings, Format, GltfFile, GltfOutput,
+    LoadError, NodeProblem, Note, ObjProblem, Playback, ReadError, Report, StageTime, Target,
+    UriProblem, WriteError, abandon_writes, destination, load_models, read_gltf_bytes, read_model,
+    write_glb, write_gltf, write_ply, write_whole, write_whole_target,
 };
 pub use light_cone::{PhotosurfaceMap, View};
 pub use mesh::{

@@ -9,7 +9,7 @@ mod seen;
 
 use std::sync::Arc;
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
 use crate::light_cone::View;
 use crate::mesh::{Appearance, Color, Material, Mesh, Model, Part, Shape};
@@ -216,15 +216,14 @@ impl Stage {
     }
 
     /// Whether all that is seen at one step is well within the range of `f32`, so that nothing can overflow or
-    /// vanish; a quick look that may say no without need.
-    pub(crate) fn is_within_f32(&self, step: usize) -> bool {
+    /// vanish; a quick look that may say no without need. `boxes` are around the parts at rest, for each object.
+    pub(crate) fn is_within_f32(&self, step: usize, boxes: &[Vec<(DVec3, DVec3)>]) -> bool {
         const RANGE: std::ops::Range<f64> = 1e-30..1e30;
-        let mut objects = self.scene.objects().iter().zip(&self.objects);
-        objects.all(|(object, placed)| {
+        let mut objects = self.scene.objects().iter().zip(boxes);
+        objects.all(|(object, boxes)| {
             let view = self.view(object, self.scene.steps()[step]);
             let stretch = view.relative_velocity().rapidity().exp();
-            placed.parts.iter().all(|(_, part)| {
-                let (low, high) = part.mesh().bounds().unwrap_or_default();
+            boxes.iter().all(|&(low, high)| {
                 let away = (low - view.observer_rest()).length() + (high - low).length();
                 RANGE.contains(&(away * stretch))
                     && RANGE.contains(&((high - low).max_element() / stretch))

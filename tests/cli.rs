@@ -446,10 +446,11 @@ fn the_report_and_the_extras_say_the_same() {
 #[test]
 fn the_same_bytes_on_every_run_and_with_any_number_of_threads() {
     let workplace = Workplace::new();
-    for format in ["glb", "ply"] {
+    // One step, and several of which some are made ahead.
+    for (example, format) in [("snapshot", "glb"), ("snapshot", "ply"), ("cube", "glb")] {
         let mut files = Vec::new();
         for threads in ["1", "2", "7", "7"] {
-            let arguments = format!("export --example snapshot -o out.{format}");
+            let arguments = format!("export --example {example} -o out.{format}");
             workplace
                 .run_with(&arguments, b"", &[("RAYON_NUM_THREADS", threads)])
                 .success();
@@ -457,6 +458,33 @@ fn the_same_bytes_on_every_run_and_with_any_number_of_threads() {
         }
         assert!(files.windows(2).all(|pair| pair[0] == pair[1]), "{format}");
     }
+}
+
+/// In a large file the data is behind room for the JSON; through a pipe it comes when the JSON is known.
+#[test]
+fn a_large_file_is_what_comes_through_a_pipe_but_for_spaces() {
+    let workplace = Workplace::new();
+    let arguments = "export --example sphere --tolerance 1e-5 -o";
+    workplace.run(&format!("{arguments} out.glb")).success();
+    let piped = workplace.run(&format!("{arguments} -")).success().stdout;
+    let file = workplace.read("out.glb");
+    let parts = |glb: &[u8]| {
+        let word = |at: usize| {
+            let bytes = glb[at..at + 4].try_into().expect("four bytes");
+            u32::from_le_bytes(bytes) as usize
+        };
+        let data = 20 + word(12);
+        assert_eq!(
+            (word(8), word(data)),
+            (glb.len(), glb.len() - data - 8),
+            "lengths are as said"
+        );
+        let json = glb[20..data].trim_ascii_end().to_vec();
+        (json, glb[data..].to_vec())
+    };
+    assert!(piped.len() > 5_000_000, "more than waits in memory");
+    assert!(file.len() > piped.len(), "there is room left");
+    assert!(parts(&file) == parts(&piped));
 }
 
 #[test]

@@ -11,13 +11,13 @@ use anyhow::{Context, bail, ensure};
 use clap::ValueEnum;
 use indicatif::ProgressBar;
 use photosurface::{
-    Attribute, Export, Facts, Format, GltfFile, Playback, Report, Scene, Stage, StageTime, Wanted,
-    WriteError, write_ply, write_whole,
+    Attribute, Export, Facts, Format, GltfFile, GltfOutput, Playback, Report, Scene, Stage,
+    StageTime, Target, Wanted, WriteError, write_ply, write_whole, write_whole_target,
 };
-use tempfile::{SpooledTempFile, spooled_tempfile, spooled_tempfile_in};
 
 use super::Status;
 use super::accuracy::{AccuracyArgs, DetailArgs, Tally};
+use super::ahead::in_order;
 use super::args::{InputArgs, ObserverArgs, number};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print, size};
@@ -97,9 +97,6 @@ struct OutputArgs {
     report: Option<PathBuf>,
 }
 
-/// Of the data of a GLB, whose JSON comes first and is known last, no more than so many bytes wait in memory.
-const HELD_IN_MEMORY: usize = 1 << 25;
-
 /// How steps are shown one after another.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub(super) enum Animate {
@@ -148,8 +145,14 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     clock.stop("read");
 
     let mut status = Status::Done;
-    for level in levels {
-        let stage = Stage::new(level.scene, input.models.clone());
+    let (mut models, last) = (input.models, levels.len() - 1);
+    for (index, level) in levels.into_iter().enumerate() {
+        // The last may have them all for itself.
+        let models = match index == last {
+            true => std::mem::take(&mut models),
+            false => models.clone(),
+        };
+        let stage = Stage::new(level.scene, models);
         let of_file = || level.files[0].display().to_string();
         format
             .least_size(&stage, if output.split { 1 } else { steps })
@@ -265,13 +268,8 @@ impl Work<'_> {
         self.progress.inc(1);
     }
 
-    /// Makes the photosurfaces of some steps and puts each into the file before the next is made, so that memory does
-    /// not grow with them.
-    fn fill<W: Write>(
-        &mut self,
-        file: &mut GltfFile<'_, W>,
-        steps: Range<usize>,
-    ) -> Result<(), WriteError> {
+    /// Makes the photosurfaces of some steps and puts each into the file, so that memory does not grow with them.
+    fn fill(&mut self, file: &mut GltfFile<'_>, steps: Range<usize>) -> Result<(), WriteError> {
         let (stage, wanted) = (self.stage, self.wanted);
         if self.is_morphing() {
             for part in stage.morphing(wanted) {
@@ -282,42 +280,30 @@ impl Work<'_> {
             }
             return Ok(());
         }
-        for photosurface in steps.flat_map(|step| stage.photosurfaces(step, wanted)) {
+        in_order(stage, wanted, steps, |photosurface| {
             self.count(&photosurface.facts);
             self.clock.stop("photosurface");
             file.add(&photosurface)?;
             self.clock.stop("write");
-        }
+            Ok(())
+        })
+    }
+
+    /// A GLB or both parts of a `.gltf`.
+    fn gltf(&mut self, steps: Range<usize>, output: GltfOutput<'_>) -> Result<(), WriteError> {
+        let (scene, attributes) = (self.stage.facts(), self.wanted.attributes);
+        let marker = self.stage.marker();
+        let mut file = GltfFile::new(output, &scene, marker, attributes, self.playback)?;
+        self.fill(&mut file, steps)?;
+        file.finish()?;
+        self.clock.stop("write");
         Ok(())
     }
 
-    fn glb(
-        &mut self,
-        steps: Range<usize>,
-        data: SpooledTempFile,
-        out: &mut dyn Write,
-    ) -> Result<(), WriteError> {
-        let (scene, attributes) = (self.stage.facts(), self.wanted.attributes);
-        let mut file = GltfFile::new(data, &scene, self.stage.marker(), attributes, self.playback)?;
-        self.fill(&mut file, steps)?;
-        file.finish_glb(&mut *out)?;
-        self.clock.stop("write");
-        Ok(out.flush()?)
-    }
-
-    fn gltf(
-        &mut self,
-        steps: Range<usize>,
-        name: &str,
-        json: &mut dyn Write,
-        data: &mut dyn Write,
-    ) -> Result<(), WriteError> {
-        let (scene, attributes) = (self.stage.facts(), self.wanted.attributes);
-        let mut file = GltfFile::new(data, &scene, self.stage.marker(), attributes, self.playback)?;
-        self.fill(&mut file, steps)?;
-        file.finish_gltf(name, &mut *json)?;
-        self.clock.stop("write");
-        Ok(json.flush()?)
+    fn glb(&mut self, steps: Range<usize>, target: Target<'_>) -> Result<(), WriteError> {
+        let parts: usize = self.stage.objects().map(|(_, parts)| parts.len()).sum();
+        let meshes = parts * if self.is_morphing() { 1 } else { steps.len() };
+        self.gltf(steps, GltfOutput::glb(target, meshes + 1))
     }
 
     /// All at once: the format says first how many vertices there are.
@@ -452,22 +438,14 @@ fn write_file(
     before_it_appears: impl FnOnce(&Work<'_>) -> Result<(), WriteError>,
 ) -> anyhow::Result<()> {
     if is_stdout(path) {
-        let data = spooled_tempfile(HELD_IN_MEMORY);
-        print(|out| Ok(work.glb(steps, data, out)?))?;
+        print(|out| Ok(work.glb(steps, Target::Stream(out))?))?;
         return Ok(before_it_appears(work)?);
     }
     match format {
-        Format::Glb => {
-            // Where the file itself has to find room too.
-            let directory = path
-                .parent()
-                .filter(|directory| *directory != Path::new(""));
-            let data = spooled_tempfile_in(HELD_IN_MEMORY, directory.unwrap_or(Path::new(".")));
-            write_whole(path, |writer| {
-                work.glb(steps, data, writer)?;
-                before_it_appears(work)
-            })?;
-        }
+        Format::Glb => write_whole_target(path, |target| {
+            work.glb(steps, target)?;
+            before_it_appears(work)
+        })?,
         Format::Ply => write_whole(path, |writer| {
             work.ply(steps, writer)?;
             before_it_appears(work)
@@ -482,7 +460,7 @@ fn write_file(
             // The data first: a .gltf never stands there without it.
             write_whole(path, |json_writer| {
                 write_whole(&binary, |binary_writer| {
-                    work.gltf(steps, name, json_writer, binary_writer)?;
+                    work.gltf(steps, GltfOutput::gltf(name, json_writer, binary_writer))?;
                     before_it_appears(work)
                 })
             })?;
@@ -559,7 +537,7 @@ fn binary_beside(path: &Path) -> PathBuf {
     path.with_extension("bin")
 }
 
-/// Wall-clock time of each stage, those of one name added up.
+/// Wall-clock time of each stage, those of one name added up: what went on in the background meanwhile does not count.
 #[derive(Clone)]
 struct Clock {
     last: Instant,

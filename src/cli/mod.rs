@@ -1,6 +1,7 @@
 //! The command line: one file per command, and what they share.
 
 mod accuracy;
+mod ahead;
 mod args;
 mod camera;
 mod check;

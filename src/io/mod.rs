@@ -10,6 +10,6 @@ pub use read::{
     UriProblem, read_gltf_bytes, read_model,
 };
 pub use write::{
-    Export, Format, GltfFile, Playback, Report, StageTime, WriteError, abandon_writes, destination,
-    write_glb, write_gltf, write_ply, write_whole,
+    Export, Format, GltfFile, GltfOutput, Playback, Report, StageTime, Target, WriteError,
+    abandon_writes, destination, write_glb, write_gltf, write_ply, write_whole, write_whole_target,
 };

@@ -43,7 +43,7 @@ impl PlainMap {
     pub(super) fn new(observer: &Velocity) -> Option<Self> {
         let heading = heading(observer.heading())?;
         let stretch = observer.stretch();
-        (stretch > 1.0 && stretch <= LARGEST).then(|| Self {
+        (stretch <= LARGEST).then(|| Self {
             direction: observer.direction(),
             heading,
             inverse_length: heading.length().recip(),
@@ -78,8 +78,14 @@ impl PlainMap {
         let (seen_w, seen_u) = (w * self.stretch, u * self.squeeze);
         let distance = 0.5 * (seen_w + seen_u);
         let inverse_distance = distance_at_rest.recip();
+        let position = across + self.direction * (0.5 * (seen_w - seen_u));
         Sighting {
-            position: across + self.direction * (0.5 * (seen_w - seen_u)),
+            // At rest everything is where it is, to the last bit.
+            position: if self.stretch == 1.0 {
+                offset
+            } else {
+                position
+            },
             distance,
             forwardness_squared: w / u,
             toward_across: across * inverse_distance,

@@ -14,8 +14,8 @@ use crate::light_cone::{Extremes, View};
 use crate::mesh::{Mesh, Part, Shape};
 use crate::scene::Tolerance;
 use crate::tessellate::{
-    Allowance, Bounds, Certificate, Counts, Precision, Singles, largest_gap, least_triangles,
-    local_stretch, nearest_point, refine, rounding_bound,
+    Allowance, Bounds, Certificate, Counts, Precision, Singles, largest_gap, local_stretch,
+    nearest_point, refine, rounding_bound, survey,
 };
 
 pub(super) use foresight::Foresight;
@@ -174,25 +174,29 @@ impl<'a> Plan<'a> {
         let surface = |((name, part), seen): ((String, Cow<'a, Part>), Seen)| {
             if !refining {
                 let mesh = part.mesh();
-                let gap = self.largest_gap(mesh);
-                let certificate = self.certificate(&limits, mesh, mesh, &seen, gap);
                 return Surface {
+                    certificate: self.certificate_of_unrefined(&limits, mesh, &seen),
                     name,
                     part,
                     seen,
-                    certificate,
                 };
             }
             let mesh = part.mesh();
-            let refined = refine(mesh, self.view.observer_rest(), &limits.allowance);
+            let observer = self.view.observer_rest();
+            let refined = refine(mesh, observer, &limits.allowance, &limits.whole);
             let seen = if refined.mesh.positions().len() == mesh.positions().len() {
                 seen
             } else {
                 Seen::new(&self.view, &refined.mesh)
             };
+            let counts = Counts {
+                triangles_in: mesh.triangles().len(),
+                triangles_out: refined.mesh.triangles().len(),
+                minimum_triangles: refined.minimum_triangles,
+            };
             Surface {
                 name,
-                certificate: self.certificate(&limits, mesh, &refined.mesh, &seen, refined.gap),
+                certificate: self.certificate(&limits, &refined.mesh, &seen, refined.gap, counts),
                 part: Cow::Owned(part.with_mesh(refined.mesh)),
                 seen,
             }
@@ -212,30 +216,36 @@ impl<'a> Plan<'a> {
         parts.into_par_iter().zip(seen).map(surface).collect()
     }
 
-    /// The certificate of a mesh that was refined to another, with the largest gap `e`.
+    /// The certificate of a mesh that stays what it is.
+    fn certificate_of_unrefined(&self, limits: &Limits, mesh: &Mesh, seen: &Seen) -> Certificate {
+        let observer = self.view.observer_rest();
+        let found = survey(mesh, observer, f64::INFINITY, &limits.whole);
+        let counts = Counts {
+            triangles_in: mesh.triangles().len(),
+            triangles_out: mesh.triangles().len(),
+            minimum_triangles: found.minimum_triangles,
+        };
+        self.certificate(limits, mesh, seen, found.gap, counts)
+    }
+
+    /// The certificate of a mesh, refined or not, with the largest gap `e`.
     fn certificate(
         &self,
         limits: &Limits,
         mesh: &Mesh,
-        refined: &Mesh,
         seen: &Seen,
         gap: f64,
+        counts: Counts,
     ) -> Certificate {
-        let observer = self.view.observer_rest();
         let bounds = Bounds {
             gap: self.view.relative_velocity().gamma_beta() * gap * (1.0 + 4.0 * f64::EPSILON),
             deviation: self.deviation,
             curvature: limits.curvature,
-            rounding: self.rounding(refined, &seen.extremes, 0.0),
-        };
-        let counts = Counts {
-            triangles_in: mesh.triangles().len(),
-            triangles_out: refined.triangles().len(),
-            minimum_triangles: least_triangles(mesh, observer, &limits.whole),
+            rounding: self.rounding(mesh, &seen.extremes, 0.0),
         };
         match self.tolerance {
             Tolerance::Angle(degrees) => {
-                Certificate::of_angles(degrees, &self.view, refined, bounds, counts)
+                Certificate::of_angles(degrees, &self.view, mesh, bounds, counts)
             }
             _ => Certificate::of_lengths(self.length, bounds, counts),
         }

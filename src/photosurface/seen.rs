@@ -47,41 +47,30 @@ pub(super) struct Seen {
 impl Seen {
     /// Every vertex of a mesh at rest mapped, with its normal and its tangent.
     pub(super) fn new(view: &View, rest: &Mesh) -> Self {
-        let positions_rest = rest.positions();
-        let mut positions = vec![DVec3::ZERO; positions_rest.len()];
-        let jobs = positions_rest
-            .par_chunks(VERTICES_PER_JOB)
-            .zip(positions.par_chunks_mut(VERTICES_PER_JOB));
-        let (normals, extremes) = match rest.normals() {
-            Some(normals_rest) => {
-                let mut normals = vec![DVec3::ZERO; normals_rest.len()];
-                let pairs = normals_rest
-                    .par_chunks(VERTICES_PER_JOB)
-                    .zip(normals.par_chunks_mut(VERTICES_PER_JOB));
-                let extremes = jobs.zip(pairs).map(|((rest, seen), normals)| {
-                    let normals = Some(normals);
-                    view.see(Batch {
-                        rest,
-                        seen,
-                        normals,
-                    })
-                });
-                let extremes = extremes.reduce(|| Extremes::NONE, Extremes::and);
-                (Some(normals), extremes)
+        let mut positions = vec![DVec3::ZERO; rest.positions().len()];
+        let mut normals = rest
+            .normals()
+            .map(|normals| vec![DVec3::ZERO; normals.len()]);
+        let places = rest.positions().chunks(VERTICES_PER_JOB);
+        let places = places.zip(positions.chunks_mut(VERTICES_PER_JOB));
+        let mut batches: Vec<Batch<'_>> = places
+            .map(|(rest, seen)| Batch {
+                rest,
+                seen,
+                normals: None,
+            })
+            .collect();
+        if let Some((rest, seen)) = rest.normals().zip(normals.as_mut()) {
+            let pairs = rest.chunks(VERTICES_PER_JOB);
+            let pairs = pairs.zip(seen.chunks_mut(VERTICES_PER_JOB));
+            for (batch, normals) in batches.iter_mut().zip(pairs) {
+                batch.normals = Some(normals);
             }
-            None => {
-                let extremes = jobs.map(|(rest, seen)| {
-                    view.see(Batch {
-                        rest,
-                        seen,
-                        normals: None,
-                    })
-                });
-                (None, extremes.reduce(|| Extremes::NONE, Extremes::and))
-            }
-        };
+        }
+        let extremes = batches.into_par_iter().map(|batch| view.see(batch));
+        let extremes = extremes.reduce(|| Extremes::NONE, Extremes::and);
         let tangents = rest.tangents().map(|tangents| {
-            let jobs = positions_rest.par_iter().with_min_len(VERTICES_PER_JOB);
+            let jobs = rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
             // The map never turns orientation round: the bitangent keeps its sign.
             let seen = |(position, tangent): (&_, &DVec4)| {
                 view.seen_tangent(*position, tangent.truncate())

@@ -9,12 +9,15 @@
 //! that neighbours always agree, bit for bit.
 
 mod allowance;
+mod along;
 mod ceiling;
 mod certificate;
+mod chart;
 mod edge;
 mod gap;
 mod minimum;
 mod nearest;
+mod queue;
 mod refine;
 mod sky;
 mod strip;
@@ -28,4 +31,4 @@ use minimum::minimum_triangles;
 pub(crate) use minimum::predicted_pieces;
 pub(crate) use nearest::nearest_point;
 pub(crate) use refine::refine;
-pub(crate) use survey::{largest_gap, least_triangles};
+pub(crate) use survey::{largest_gap, survey};

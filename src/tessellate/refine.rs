@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::edge::{EDGE_SHARE, division, needs_division, point_between};
 use super::sky::{Corner, Pieces, divide};
-use super::survey::{largest_gap_of_others, triangles_above};
+use super::survey::survey;
 use super::{Allowance, minimum_triangles, triangle_gap};
 use crate::mesh::Mesh;
 
@@ -27,29 +27,37 @@ pub(crate) struct Refined {
     pub(crate) gap: f64,
     /// Whether every gap is within the allowance.
     pub(crate) complete: bool,
+    /// The fewest triangles that theory allows where `whole` is allowed.
+    pub(crate) minimum_triangles: f64,
 }
 
-/// Refines `mesh` as seen from `observer`, both in the rest frame, until every gap is within the allowance.
+/// Refines `mesh` as seen from `observer`, both in the rest frame, until every gap is within the allowance; `whole` is
+/// what would be allowed if gaps were all there is.
 ///
 /// Vertices of the mesh stay what they are, in their order; new ones follow, first those on edges. The new
 /// positions lie on the flat triangles to rounding, equal for equal edges whatever else the vertices carry;
 /// attributes are interpolated, directions brought to unit length. Same result for any number of threads.
-pub(crate) fn refine(mesh: &Mesh, observer: DVec3, allowance: &Allowance) -> Refined {
+pub(crate) fn refine(
+    mesh: &Mesh,
+    observer: DVec3,
+    allowance: &Allowance,
+    whole: &Allowance,
+) -> Refined {
     // What has a small gap at a glance is never divided, nor are its edges: their gaps are not larger.
     let small = match allowance {
         Allowance::Everywhere(allowed) => EDGE_SHARE * allowed,
         Allowance::Angle { .. } => 0.0,
     };
-    let looked_at = triangles_above(mesh, observer, small);
+    let found = survey(mesh, observer, small, whole);
     let mut refined = Refined {
         mesh: mesh.clone(),
-        gap: 0.0,
+        gap: found.gap,
         complete: true,
+        minimum_triangles: found.minimum_triangles,
     };
-    if !looked_at.is_empty() {
-        divide_some(mesh, &looked_at, observer, allowance, &mut refined);
+    if !found.above.is_empty() {
+        divide_some(mesh, &found.above, observer, allowance, &mut refined);
     }
-    refined.gap = largest_gap_of_others(mesh, observer, small, refined.gap);
     refined
 }
 
@@ -349,7 +357,8 @@ mod tests {
             .and_then(|mesh| mesh.with_texture_coordinates(positions.iter().map(uv).collect()))
             .and_then(|mesh| mesh.with_colors(positions.iter().map(color).collect()))
             .unwrap();
-        let refined = refine(&mesh, DVec3::ZERO, &Allowance::Everywhere(1e-4));
+        let allowance = Allowance::Everywhere(1e-4);
+        let refined = refine(&mesh, DVec3::ZERO, &allowance, &allowance);
         assert!(refined.complete && refined.gap <= 1e-4);
         let made = refined.mesh;
         assert!(made.positions().len() > 500);

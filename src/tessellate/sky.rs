@@ -10,22 +10,23 @@
 //! the point that makes an equilateral triangle on that edge (P.-E. Bern's and A. Üngör's off-centres, in the
 //! order of an advancing front). Perfect triangles grow from perfect edges; flaws are left to the end.
 
-use std::collections::BinaryHeap;
-
 use glam::{DVec2, DVec3};
 use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
 use spade::{
-    ConstrainedDelaunayTriangulation, HasPosition, Point2, PositionInTriangulation, Triangulation,
+    ConstrainedDelaunayTriangulation, Point2, PositionInTriangulation, Triangulation,
     mitigate_underflow,
 };
 
+use super::along::{Spot, gap_along};
+use super::chart::{Chart, Plane};
 use super::gap::triangle_gap_place;
+use super::queue::{Queue, Task};
 use super::strip::strip;
 use super::{Allowance, triangle_gap};
 
 /// The gap that new triangles aim at, as a part of what is allowed: a little room for the last few, which
 /// have to fit between others.
-const AIM: f64 = 0.95;
+const AIM: f64 = 0.96;
 
 /// A point this near to an edge of the boundary, against the edge's length, would make a flat triangle.
 const TOO_NEAR: f64 = 0.225;
@@ -35,9 +36,6 @@ const TOO_NEAR: f64 = 0.225;
 /// one needs more points.
 const CHARTS: i32 = 8;
 const FLATTER: f64 = 4.0;
-
-/// More points than this are not spent on a chart that does not fit.
-const MOST_MORE: f64 = 1e6;
 
 /// A point on the boundary of the triangle, or inside.
 #[derive(Clone, Copy, Debug)]
@@ -107,123 +105,14 @@ pub(super) fn divide(
     best.unwrap_or_else(|| strip(boundary, allowance))
 }
 
-/// The plane of a triangle, with coordinates from the point nearest to the observer.
-#[derive(Clone, Copy, Debug)]
-struct Plane {
-    x: DVec3,
-    y: DVec3,
-    /// Distance of the plane from the observer.
-    height: f64,
-    /// Distance of the triangle from the observer.
-    nearest: f64,
-    corners: [DVec2; 3],
-    /// Twice the area.
-    area: f64,
-}
-
-impl Plane {
-    /// `None` for a triangle without a plane.
-    fn new([a, b, c]: [DVec3; 3]) -> Option<Self> {
-        let x = (b - a).try_normalize()?;
-        let normal = (b - a).cross(c - a).try_normalize()?;
-        let y = normal.cross(x);
-        let corners = [a, b, c].map(|corner| DVec2::new(corner.dot(x), corner.dot(y)));
-        let area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]);
-        let longest = (b - a)
-            .length_squared()
-            .max((c - b).length_squared())
-            .max((a - c).length_squared());
-        let height = a.dot(normal).abs();
-        (area > 1e-13 * longest).then(|| Self {
-            x,
-            y,
-            height,
-            nearest: height.hypot(distance_from_origin(corners)),
-            corners,
-            area,
-        })
-    }
-
-    fn place(&self, offset: DVec3) -> DVec2 {
-        DVec2::new(offset.dot(self.x), offset.dot(self.y))
-    }
-
-    fn weights(&self, place: DVec2) -> DVec3 {
-        let [a, b, c] = self.corners;
-        let w1 = (place - a).perp_dot(c - a) / self.area;
-        let w2 = (b - a).perp_dot(place - a) / self.area;
-        DVec3::new(1.0 - w1 - w2, w1, w2)
-    }
-}
-
-/// The stereographic chart of a plane; for a height beyond that of the plane it is flatter than the sky.
-#[derive(Clone, Copy, Debug)]
-struct Chart {
-    plane: Plane,
-    height: f64,
-}
-
-impl Chart {
-    fn place_to_chart(&self, place: DVec2) -> DVec2 {
-        place / (place.length().hypot(self.height) + self.height)
-    }
-
-    fn chart_to_place(&self, w: DVec2) -> DVec2 {
-        w * (2.0 * self.height / (1.0 - w.length_squared()))
-    }
-
-    /// How many points more than the sky asks for a flatter chart may take.
-    fn points(&self, allowed: f64) -> usize {
-        if self.height <= self.plane.height {
-            return 0;
-        }
-        let reach = self.plane.nearest.max(self.height);
-        let share = self.height * self.plane.area / (reach * reach * allowed);
-        share.min(MOST_MORE) as usize
-    }
-
-    /// The square of the metric's factor: lengths in the chart times it are lengths in which a gap `e` is an
-    /// edge of `sqrt(8 e)`.
-    fn metric(&self, w: DVec2) -> f64 {
-        let square = w.length_squared();
-        4.0 * self.height / (1.0 - square * square).max(f64::EPSILON)
-    }
-}
-
-/// A vertex of the triangulation.
-#[derive(Clone, Copy, Debug)]
-struct Vertex {
-    chart: Point2<f64>,
-    corner: Corner,
-}
-
-impl HasPosition for Vertex {
-    type Scalar = f64;
-
-    fn position(&self) -> Point2<f64> {
-        self.chart
-    }
-}
-
-/// A face that has to be divided, as one number: the largest comes first, which is that of the least flaw.
-///
-/// Half a triangulation's time went into a queue of larger things.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Task(u64);
-
-impl Task {
-    fn new(flaw: f32, face: FixedFaceHandle<InnerTag>) -> Self {
-        // The bits of positive floats are in the order of the floats.
-        Self(u64::from(!flaw.to_bits()) << 32 | face.index() as u64)
-    }
-
-    fn flaw(self) -> f32 {
-        f32::from_bits(!((self.0 >> 32) as u32))
-    }
-
-    fn face_index(self) -> usize {
-        (self.0 & u64::from(u32::MAX)) as usize
-    }
+/// A point to be added.
+struct New {
+    /// Where in the chart.
+    w: DVec2,
+    /// Weights of the triangle's corners.
+    weights: DVec3,
+    /// A vertex near it.
+    hint: FixedVertexHandle,
 }
 
 /// A triangulation that grows.
@@ -232,12 +121,16 @@ struct Front<'a> {
     positions: [DVec3; 3],
     observer: DVec3,
     allowance: &'a Allowance,
-    triangulation: ConstrainedDelaunayTriangulation<Vertex>,
-    tasks: BinaryHeap<Task>,
-    /// For each face how far its shortest edge is from the ideal length; NaN where nothing is to do. Tasks that
+    triangulation: ConstrainedDelaunayTriangulation<Point2<f64>>,
+    /// What is known of the vertices of the triangulation, which are small and stay together so.
+    spots: Vec<Spot>,
+    /// And their weights of the triangle's corners.
+    weights: Vec<DVec3>,
+    tasks: Queue,
+    /// For each face its flaw; NaN where nothing is to do. Tasks that
     /// say otherwise are out of date.
     flaws: Vec<(f32, FixedFaceHandle<InnerTag>)>,
-    boundary: usize,
+    boundary: &'a [Corner],
 }
 
 impl<'a> Front<'a> {
@@ -246,7 +139,7 @@ impl<'a> Front<'a> {
         chart: Chart,
         positions: [DVec3; 3],
         observer: DVec3,
-        boundary: &[Corner],
+        boundary: &'a [Corner],
         allowance: &'a Allowance,
     ) -> Option<Self> {
         let mut front = Self {
@@ -255,14 +148,19 @@ impl<'a> Front<'a> {
             observer,
             allowance,
             triangulation: ConstrainedDelaunayTriangulation::new(),
-            tasks: BinaryHeap::new(),
+            spots: boundary
+                .iter()
+                .map(|corner| Spot::new(&chart.plane, corner.offset))
+                .collect(),
+            weights: boundary.iter().map(|corner| corner.weights).collect(),
+            tasks: Queue::new(),
             flaws: vec![],
-            boundary: boundary.len(),
+            boundary,
         };
         let mut handles = Vec::with_capacity(boundary.len());
-        for (index, &corner) in boundary.iter().enumerate() {
-            let w = chart.place_to_chart(chart.plane.place(corner.offset));
-            let handle = front.triangulation.insert(front.vertex(w, corner)).ok()?;
+        for index in 0..boundary.len() {
+            let w = chart.place_to_chart(front.spots[index].place);
+            let handle = front.triangulation.insert(to_point(w)).ok()?;
             if handle.index() != index {
                 return None;
             }
@@ -278,114 +176,129 @@ impl<'a> Front<'a> {
         let faces: Vec<_> = front
             .triangulation
             .inner_faces()
-            .map(|face| face.fix())
+            .map(|face| (face.fix(), face.vertices().map(|vertex| vertex.fix())))
             .collect();
-        for face in faces {
-            front.consider(face);
+        for (face, vertices) in faces {
+            front.consider(face, vertices);
         }
         Some(front)
-    }
-
-    fn vertex(&self, w: DVec2, corner: Corner) -> Vertex {
-        Vertex {
-            chart: mitigate_underflow(Point2::new(w.x, w.y)),
-            corner,
-        }
     }
 
     /// Adds points until nothing is left to do, or `most_points` have been added.
     fn advance(&mut self, most_points: usize) {
         let mut added = 0;
+        let mut around = vec![];
         while added < most_points
             && let Some(task) = self.tasks.pop()
         {
-            let (flaw, face) = self.flaws[task.face_index()];
-            if flaw != task.flaw() {
+            let (flaw, face) = self.flaws[task.face as usize];
+            if flaw != task.flaw {
                 continue;
             }
-            let vertices = self.triangulation.face(face).vertices();
-            let hint = vertices[0].fix();
-            let Some((w, corner)) = self.new_point(vertices.map(|vertex| *vertex.data()), hint)
-            else {
+            let Some(New { w, weights, hint }) = self.new_point(face) else {
                 continue;
             };
             let count = self.triangulation.num_vertices();
-            let vertex = self.vertex(w, corner);
-            let Ok(handle) = self.triangulation.insert_with_hint(vertex, hint) else {
+            let Ok(handle) = self.triangulation.insert_with_hint(to_point(w), hint) else {
                 continue;
             };
             if self.triangulation.num_vertices() == count {
                 continue;
             }
+            let offset = mix(self.positions, weights) - self.observer;
+            self.spots.push(Spot::new(&self.chart.plane, offset));
+            self.weights.push(weights);
             added += 1;
-            let around = self.triangulation.vertex(handle).out_edges();
-            let faces: Vec<_> = around
-                .filter_map(|edge| edge.face().as_inner().map(|face| face.fix()))
-                .collect();
-            for face in faces {
-                self.consider(face);
+            let edges = self.triangulation.vertex(handle).out_edges();
+            around.extend(edges.filter_map(|edge| {
+                let face = edge.face().as_inner()?.fix();
+                Some((face, [handle, edge.to().fix(), edge.next().to().fix()]))
+            }));
+            for (face, vertices) in around.drain(..) {
+                self.consider(face, vertices);
             }
         }
     }
 
     /// Sets a task if the face has too large a gap.
-    fn consider(&mut self, face: FixedFaceHandle<InnerTag>) {
-        let flaw = self.flaw(face);
+    fn consider(&mut self, face: FixedFaceHandle<InnerTag>, vertices: [FixedVertexHandle; 3]) {
+        let flaw = self.flaw(vertices);
         if self.flaws.len() <= face.index() {
             self.flaws.resize(face.index() + 1, (f32::NAN, face));
         }
         self.flaws[face.index()] = (flaw.unwrap_or(f32::NAN), face);
         if let Some(flaw) = flaw {
-            self.tasks.push(Task::new(flaw, face));
+            self.tasks.push(Task {
+                face: face.index() as u32,
+                flaw,
+            });
         }
     }
 
-    /// How far the shortest edge of a face with too large a gap is from the ideal length, as a ratio's logarithm.
-    fn flaw(&self, face: FixedFaceHandle<InnerTag>) -> Option<f32> {
-        let vertices = self.triangulation.face(face).vertices();
-        let corners = vertices.map(|vertex| vertex.data().corner);
-        if is_outside(&corners) {
+    /// How far the square of the shortest edge of a face with too large a gap is from that of the ideal length, as a part
+    /// of the smaller one.
+    fn flaw(&self, vertices: [FixedVertexHandle; 3]) -> Option<f32> {
+        let indices = vertices.map(|vertex| vertex.index());
+        if self.is_outside(indices) {
             return None;
         }
-        let offsets = corners.map(|corner| corner.offset);
+        let offsets = indices.map(|index| self.spots[index].offset);
         let allowed = self.allowance.between(&offsets);
-        if triangle_gap(offsets[0], offsets[1], offsets[2]) <= allowed {
+        let [a, b, c] = vertices.map(|vertex| to_vec(self.triangulation.vertex(vertex).position()));
+        let sides = [b - a, c - b, a - c].map(DVec2::length_squared);
+        let spots = indices.map(|index| &self.spots[index]);
+        let along = gap_along(&self.chart.plane, spots);
+        let is_small = along.bound <= allowed
+            || !along.is_sharp && triangle_gap(offsets[0], offsets[1], offsets[2]) <= allowed;
+        if is_small {
             return None;
         }
-        let [a, b, c] = vertices.map(|vertex| to_vec(vertex.position()));
-        let shortest = (b - a)
-            .length_squared()
-            .min((c - b).length_squared())
-            .min((a - c).length_squared());
-        // An equilateral triangle with the circumradius R, R^2 / 2 the gap of its middle, has the side sqrt(3) R.
-        let ideal = 6.0 * AIM * allowed / self.chart.metric(a);
-        Some((shortest / ideal).ln().abs() as f32)
+        // An equilateral triangle with the circumradius R, R^2 / 2 the gap of its middle, has the side sqrt(3) R. The
+        // metric is that of one corner, by chance: always the newest one would be the same side's too often.
+        let corner = (indices[0] + indices[1] + indices[2]) % 3;
+        let ideal = 6.0 * AIM * allowed / self.chart.metric([a, b, c][corner]);
+        let shortest = sides[0].min(sides[1]).min(sides[2]);
+        Some(((shortest - ideal).abs() / shortest.min(ideal)) as f32)
     }
 
-    /// Where to add a point for a face: in front of its shortest edge, or else where its middle is.
-    fn new_point(&self, face: [Vertex; 3], hint: FixedVertexHandle) -> Option<(DVec2, Corner)> {
-        let w = self.ideal_point(face.map(|vertex| to_vec(vertex.chart)));
+    /// Three points on one side of the triangle: a face between the side and its arc in the chart.
+    fn is_outside(&self, vertices: [usize; 3]) -> bool {
+        // Points inside are on no side.
+        let sides = |vertex: usize| self.boundary.get(vertex).map_or(0, |corner| corner.sides);
+        sides(vertices[0]) & sides(vertices[1]) & sides(vertices[2]) != 0
+    }
+
+    /// Where to add a point for a face: in front of its shortest edge, or else where its middle is; and a vertex near it.
+    fn new_point(&self, face: FixedFaceHandle<InnerTag>) -> Option<New> {
+        let vertices = self.triangulation.face(face).vertices();
+        let hint = vertices[0].fix();
+        let w = self.ideal_point(vertices.map(|vertex| to_vec(vertex.position())));
         if w.length_squared() < 1.0 {
             let weights = self.chart.plane.weights(self.chart.chart_to_place(w));
-            if weights.min_element() > 0.0 && self.has_room(w, hint) {
-                return Some((w, self.inner_corner(weights)));
+            if weights.min_element() > 0.0
+                && let Some(near) = self.room(w, hint)
+            {
+                return Some(New {
+                    w,
+                    weights,
+                    hint: near,
+                });
             }
         }
         // Next to the boundary: where the gap is largest, or the middle where that is on the boundary itself.
-        let [a, b, c] = face.map(|vertex| vertex.corner);
-        let [u, v, w] = triangle_gap_place(a.offset, b.offset, c.offset);
-        let worst = a.weights * u + b.weights * v + c.weights * w;
-        let middle = (a.weights + b.weights + c.weights) / 3.0;
+        let indices = vertices.map(|vertex| vertex.index());
+        let [a, b, c] = indices.map(|index| self.spots[index].offset);
+        let [u, v, w] = triangle_gap_place(a, b, c);
+        let [a, b, c] = indices.map(|index| self.weights[index]);
+        let worst = a * u + b * v + c * w;
         let weights = if worst.min_element() > 1e-9 {
             worst
         } else {
-            middle
+            (a + b + c) / 3.0
         };
-        let corner = self.inner_corner(weights);
-        let w = self
-            .chart
-            .place_to_chart(self.chart.plane.place(corner.offset));
-        (weights.min_element() > 0.0).then_some((w, corner))
+        let offset = mix(self.positions, weights) - self.observer;
+        let w = self.chart.place_to_chart(self.chart.plane.place(offset));
+        (weights.min_element() > 0.0).then_some(New { w, weights, hint })
     }
 
     /// The point that makes an equilateral triangle of the ideal size on the shortest side of a
@@ -425,30 +338,34 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// Whether a point of the chart is in a face of the triangle, not too near to the boundary.
-    fn has_room(&self, w: DVec2, hint: FixedVertexHandle) -> bool {
+    /// A vertex next to a point of the chart, if that is in a face of the triangle, not too near to the boundary.
+    fn room(&self, w: DVec2, hint: FixedVertexHandle) -> Option<FixedVertexHandle> {
         match self
             .triangulation
             .locate_with_hint(Point2::new(w.x, w.y), hint)
         {
             PositionInTriangulation::OnFace(face) => {
                 let face = self.triangulation.face(face);
-                if is_outside(&face.vertices().map(|vertex| vertex.data().corner)) {
-                    return false;
+                let vertices = face.vertices();
+                if self.is_outside(vertices.map(|vertex| vertex.index())) {
+                    return None;
                 }
-                face.adjacent_edges()
+                let has_room = face
+                    .adjacent_edges()
                     .iter()
                     .filter(|edge| edge.is_constraint_edge())
                     .all(|edge| {
                         let (a, b) = (to_vec(edge.from().position()), to_vec(edge.to().position()));
                         // Height over length.
                         (b - a).perp_dot(w - a).abs() > 2.0 * TOO_NEAR * (b - a).length_squared()
-                    })
+                    });
+                has_room.then(|| vertices[0].fix())
             }
             PositionInTriangulation::OnEdge(edge) => {
-                !self.triangulation.directed_edge(edge).is_constraint_edge()
+                let edge = self.triangulation.directed_edge(edge);
+                (!edge.is_constraint_edge()).then(|| edge.from().fix())
             }
-            _ => false,
+            _ => None,
         }
     }
 
@@ -457,38 +374,34 @@ impl<'a> Front<'a> {
         mix(self.positions, weights) - self.observer
     }
 
-    fn inner_corner(&self, weights: DVec3) -> Corner {
-        Corner {
-            weights,
-            offset: mix(self.positions, weights) - self.observer,
-            sides: 0,
-        }
-    }
-
     /// The triangles; `None` if one of them is turned over.
     fn finish(self) -> Option<Pieces> {
-        let vertices = self.triangulation.vertices().skip(self.boundary);
         let mut pieces = Pieces {
-            inside: vertices
-                .map(|vertex| vertex.data().corner.weights)
-                .collect(),
+            inside: self.weights[self.boundary.len()..].to_vec(),
+            triangles: Vec::with_capacity(self.triangulation.num_inner_faces()),
             complete: true,
             ..Pieces::default()
         };
         for face in self.triangulation.inner_faces() {
-            let vertices = face.vertices();
-            let corners = vertices.map(|vertex| vertex.data().corner);
-            if is_outside(&corners) {
+            let vertices = face.vertices().map(|vertex| vertex.index());
+            if self.is_outside(vertices) {
                 continue;
             }
-            let [a, b, c] = corners.map(|corner| DVec2::new(corner.weights.y, corner.weights.z));
+            let [a, b, c] = vertices.map(|vertex| {
+                let weights = self.weights[vertex];
+                DVec2::new(weights.y, weights.z)
+            });
             if (b - a).perp_dot(c - a) <= 0.0 {
                 return None;
             }
-            pieces.measure(&corners, self.allowance);
-            pieces
-                .triangles
-                .push(vertices.map(|vertex| vertex.index() as u32));
+            let spots = vertices.map(|vertex| &self.spots[vertex]);
+            let offsets = spots.map(|spot| spot.offset);
+            // Most are known to be smaller than one that was met before.
+            let bound = gap_along(&self.chart.plane, spots).bound;
+            if !(bound <= pieces.gap && bound <= self.allowance.between(&offsets)) {
+                pieces.measure(offsets, self.allowance);
+            }
+            pieces.triangles.push(vertices.map(|vertex| vertex as u32));
         }
         Some(pieces)
     }
@@ -496,30 +409,11 @@ impl<'a> Front<'a> {
 
 impl Pieces {
     /// Takes the gap of one triangle into account.
-    pub(super) fn measure(&mut self, corners: &[Corner; 3], allowance: &Allowance) {
-        let offsets = corners.map(|corner| corner.offset);
+    pub(super) fn measure(&mut self, offsets: [DVec3; 3], allowance: &Allowance) {
         let gap = triangle_gap(offsets[0], offsets[1], offsets[2]);
         self.gap = self.gap.max(gap);
         self.complete &= gap <= allowance.between(&offsets);
     }
-}
-
-/// Three points on one side of the triangle: a face between the side and its arc in the chart.
-fn is_outside(corners: &[Corner; 3]) -> bool {
-    corners[0].sides & corners[1].sides & corners[2].sides != 0
-}
-
-/// Distance of a counter-clockwise triangle from the origin; zero inside.
-fn distance_from_origin(corners: [DVec2; 3]) -> f64 {
-    let sides = [0, 1, 2].map(|i| (corners[i], corners[(i + 1) % 3]));
-    if sides.iter().all(|(a, b)| a.perp_dot(*b) >= 0.0) {
-        return 0.0;
-    }
-    let to_side = |(a, b): (DVec2, DVec2)| {
-        let parameter = (-a.dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-        (a + (b - a) * parameter).length()
-    };
-    sides.map(to_side).into_iter().fold(f64::INFINITY, f64::min)
 }
 
 fn mix([a, b, c]: [DVec3; 3], weights: DVec3) -> DVec3 {
@@ -528,6 +422,10 @@ fn mix([a, b, c]: [DVec3; 3], weights: DVec3) -> DVec3 {
 
 fn to_vec(point: Point2<f64>) -> DVec2 {
     DVec2::new(point.x, point.y)
+}
+
+fn to_point(w: DVec2) -> Point2<f64> {
+    mitigate_underflow(Point2::new(w.x, w.y))
 }
 
 fn circumcenter(a: DVec2, b: DVec2, c: DVec2) -> DVec2 {

@@ -44,7 +44,8 @@ pub(super) fn strip(boundary: &[Corner], allowance: &Allowance) -> Pieces {
     };
     let (mut low, mut up) = (1, 1);
     let mut add = |triangle: [u32; 3]| {
-        pieces.measure(&triangle.map(|index| boundary[index as usize]), allowance);
+        let offsets = triangle.map(|index| boundary[index as usize].offset);
+        pieces.measure(offsets, allowance);
         pieces.triangles.push(triangle);
     };
     add([lower[0], lower[1], upper[1]]);

@@ -7,7 +7,9 @@
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::{Accessor, Index, accessor::sparse::Sparse};
 
+use super::bytes::Bytes;
 use super::document::Document;
+use super::run::Run;
 use super::{AccessorProblem, ReadError, extensions};
 
 /// What an accessor has to hold.
@@ -39,7 +41,7 @@ impl Numbers {
 /// (400 MB of positions) are no morph target of any mesh but an attempt on the memory.
 const MOST_ZEROS: usize = 1 << 24;
 
-impl Document {
+impl Document<'_> {
     /// The number of elements of an accessor.
     pub(super) fn count(&self, index: Index<Accessor>) -> usize {
         self.root.accessors[index.value()].count.0 as usize
@@ -54,16 +56,60 @@ impl Document {
     ) -> Result<Numbers, ReadError> {
         let accessor = &self.root.accessors[index.value()];
         self.check_compression(accessor)?;
-        self.numbers_of(accessor, expected)
-            .map_err(|problem| ReadError::Accessor {
-                place: place.to_owned(),
-                accessor: index.value(),
-                problem,
-            })
+        let layout = Layout::of(accessor, expected);
+        layout
+            .and_then(|layout| self.numbers_of(accessor, &layout))
+            .map_err(|failure| failure.at(place, index))
+    }
+
+    /// What `make` makes of the elements of an accessor, each of `N` numbers: what would become of
+    /// [`numbers`](Self::numbers), and where they are plain floats without these in between.
+    pub(super) fn elements<T, const N: usize>(
+        &self,
+        index: Index<Accessor>,
+        expected: &Expected,
+        place: &str,
+        make: impl Fn([f64; N]) -> T + Sync,
+    ) -> Result<Vec<T>, ReadError>
+    where
+        T: Copy + Default + Send,
+    {
+        debug_assert!(expected.types.iter().any(|kind| kind.multiplicity() == N));
+        let accessor = &self.root.accessors[index.value()];
+        if accessor.component_type.unwrap().0 == ComponentType::F32
+            && let Some(run) = self.plain(index, expected, place)?
+        {
+            return run.map(|bytes| {
+                let words = bytes.as_chunks().0;
+                make(std::array::from_fn(|i| f32::from_le_bytes(words[i]).into()))
+            });
+        }
+        let numbers = self.numbers(index, expected, place)?;
+        let elements = numbers.values.as_chunks().0;
+        Ok(elements.iter().map(|&element| make(element)).collect())
+    }
+
+    /// Where the elements of an accessor are, if it says nothing but that.
+    pub(super) fn plain(
+        &self,
+        index: Index<Accessor>,
+        expected: &Expected,
+        place: &str,
+    ) -> Result<Option<Run<'_>>, ReadError> {
+        let accessor = &self.root.accessors[index.value()];
+        self.check_compression(accessor)?;
+        let layout = Layout::of(accessor, expected).map_err(|failure| failure.at(place, index))?;
+        let (Some(view), None) = (accessor.buffer_view, &accessor.sparse) else {
+            return Ok(None);
+        };
+        let offset = accessor.byte_offset.unwrap_or_default().0;
+        let run = self.run(view.value(), offset, accessor.count.0 as usize, &layout);
+        run.map_err(|problem| Failure::from(problem).at(place, index))
+            .map(Some)
     }
 
     /// The bytes of a buffer view.
-    pub(super) fn view(&self, index: usize) -> Result<&[u8], AccessorProblem> {
+    pub(super) fn view(&self, index: usize) -> Result<Bytes<'_>, AccessorProblem> {
         let view = &self.root.buffer_views[index];
         let buffer = view.buffer.value();
         let Some(data) = &self.buffers[buffer] else {
@@ -79,7 +125,7 @@ impl Document {
                 length: data.len(),
             });
         }
-        Ok(&data[start as usize..end as usize])
+        Ok(data.view(start as usize..end as usize))
     }
 
     /// Refuses compressed data that has no uncompressed stand-in, by the name of the compression.
@@ -96,77 +142,82 @@ impl Document {
         }
     }
 
-    fn numbers_of(
-        &self,
-        accessor: &Accessor,
-        expected: &Expected,
-    ) -> Result<Numbers, AccessorProblem> {
-        let kind = accessor.type_.unwrap();
-        let component = accessor.component_type.unwrap().0;
-        if !expected.types.contains(&kind) || !expected.components.contains(&component) {
-            return Err(AccessorProblem::Kind {
-                found: format!("{} of {}", type_name(kind), component_name(component)),
-                expected: expected.words,
-            });
-        }
+    fn numbers_of(&self, accessor: &Accessor, layout: &Layout) -> Result<Numbers, Failure> {
         let count = accessor.count.0 as usize;
-        let width = kind.multiplicity();
-        let layout = Layout {
-            component,
-            normalized: accessor.normalized,
-            width,
-        };
+        let width = layout.width;
         let mut values = match accessor.buffer_view {
             Some(view) => {
                 let offset = accessor.byte_offset.unwrap_or_default().0;
-                self.elements(view.value(), offset, count, &layout)?
+                self.values(view.value(), offset, count, layout)?
             }
             None if count > MOST_ZEROS => {
-                return Err(AccessorProblem::TooManyZeros {
+                let problem = AccessorProblem::TooManyZeros {
                     found: count,
                     limit: MOST_ZEROS,
-                });
+                };
+                return Err(problem.into());
             }
             None => vec![0.0; count * width],
         };
         if let Some(sparse) = &accessor.sparse {
-            self.substitute(&mut values, sparse, count, &layout)?;
+            self.substitute(&mut values, sparse, count, layout)?;
         }
         Ok(Numbers { values, width })
     }
 
-    /// `count` elements from byte `offset` of a view on.
-    fn elements(
+    /// The components of `count` elements from byte `offset` of a view on.
+    fn values(
         &self,
         view: usize,
         offset: u64,
         count: usize,
         layout: &Layout,
-    ) -> Result<Vec<f64>, AccessorProblem> {
-        let bytes = self.view(view)?;
+    ) -> Result<Vec<f64>, Failure> {
+        let run = self.run(view, offset, count, layout)?;
         if count == 0 {
             return Ok(vec![]);
         }
+        let mut buffer = vec![];
+        let end = run.start + run.stride * (count - 1) + run.size;
+        let bytes = run.bytes.part(run.start..end, &mut buffer);
+        let mut values = Vec::with_capacity(count * layout.width);
+        for element in bytes.map_err(Failure::File)?.chunks(run.stride) {
+            let components = element[..run.size].chunks_exact(layout.component.size());
+            values.extend(components.map(|bytes| layout.number(bytes)));
+        }
+        Ok(values)
+    }
+
+    /// Where `count` elements from byte `offset` of a view on are.
+    fn run(
+        &self,
+        view: usize,
+        offset: u64,
+        count: usize,
+        layout: &Layout,
+    ) -> Result<Run<'_>, AccessorProblem> {
+        let bytes = self.view(view)?;
         let size = layout.component.size() * layout.width;
         let stride = self.root.buffer_views[view].byte_stride;
         let stride = stride.map_or(size, |stride| stride.0);
-        if stride < size {
+        if count > 0 && stride < size {
             return Err(AccessorProblem::Stride { stride, size });
         }
-        let end = u128::from(offset) + stride as u128 * (count as u128 - 1) + size as u128;
-        if end > bytes.len() as u128 {
+        let end = u128::from(offset) + stride as u128 * (count.max(1) as u128 - 1) + size as u128;
+        if count > 0 && end > bytes.len() as u128 {
             return Err(AccessorProblem::BeyondView {
                 end,
                 view,
                 length: bytes.len(),
             });
         }
-        let mut values = Vec::with_capacity(count * layout.width);
-        for element in bytes[offset as usize..end as usize].chunks(stride) {
-            let components = element[..size].chunks_exact(layout.component.size());
-            values.extend(components.map(|bytes| layout.number(bytes)));
-        }
-        Ok(values)
+        Ok(Run {
+            bytes,
+            start: offset as usize,
+            stride,
+            size,
+            count,
+        })
     }
 
     /// Puts the values of a sparse accessor in their places.
@@ -176,7 +227,7 @@ impl Document {
         sparse: &Sparse,
         count: usize,
         layout: &Layout,
-    ) -> Result<(), AccessorProblem> {
+    ) -> Result<(), Failure> {
         let substitutes = sparse.count.0 as usize;
         let index_layout = Layout {
             component: sparse.indices.component_type.unwrap().0,
@@ -184,24 +235,51 @@ impl Document {
             width: 1,
         };
         let (view, offset) = (&sparse.indices.buffer_view, &sparse.indices.byte_offset);
-        let indices = self.elements(view.value(), offset.0, substitutes, &index_layout)?;
+        let indices = self.values(view.value(), offset.0, substitutes, &index_layout)?;
         let (view, offset) = (&sparse.values.buffer_view, &sparse.values.byte_offset);
-        let new = self.elements(view.value(), offset.0, substitutes, layout)?;
+        let new = self.values(view.value(), offset.0, substitutes, layout)?;
         let mut first_free = 0;
         for (position, &index) in indices.iter().enumerate() {
             let index = index as usize;
             if index < first_free || index >= count {
-                return Err(AccessorProblem::SparseIndex {
+                let problem = AccessorProblem::SparseIndex {
                     position,
                     index: index as u32,
                     count,
-                });
+                };
+                return Err(problem.into());
             }
             first_free = index + 1;
             values[index * layout.width..][..layout.width]
                 .copy_from_slice(&new[position * layout.width..][..layout.width]);
         }
         Ok(())
+    }
+}
+
+/// Why there are no numbers.
+enum Failure {
+    Problem(AccessorProblem),
+    File(ReadError),
+}
+
+impl From<AccessorProblem> for Failure {
+    fn from(problem: AccessorProblem) -> Self {
+        Self::Problem(problem)
+    }
+}
+
+impl Failure {
+    /// As an error that says what the numbers are for.
+    fn at(self, place: &str, index: Index<Accessor>) -> ReadError {
+        match self {
+            Self::Problem(problem) => ReadError::Accessor {
+                place: place.to_owned(),
+                accessor: index.value(),
+                problem,
+            },
+            Self::File(error) => error,
+        }
     }
 }
 
@@ -214,6 +292,24 @@ struct Layout {
 }
 
 impl Layout {
+    /// That of an accessor, if it is one of those that are expected.
+    fn of(accessor: &Accessor, expected: &Expected) -> Result<Self, Failure> {
+        let kind = accessor.type_.unwrap();
+        let component = accessor.component_type.unwrap().0;
+        if !expected.types.contains(&kind) || !expected.components.contains(&component) {
+            let problem = AccessorProblem::Kind {
+                found: format!("{} of {}", type_name(kind), component_name(component)),
+                expected: expected.words,
+            };
+            return Err(problem.into());
+        }
+        Ok(Self {
+            component,
+            normalized: accessor.normalized,
+            width: kind.multiplicity(),
+        })
+    }
+
     /// One number; `bytes` are as many as the component has.
     fn number(&self, bytes: &[u8]) -> f64 {
         let (value, largest) = match (self.component, bytes) {

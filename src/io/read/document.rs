@@ -7,11 +7,14 @@
 //! by extensions, and scenes without nodes.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
+use gltf::binary::{ChunkType, Error as GlbProblem};
 use gltf::json::validation::{Checked, Error as Invalid, Validate};
 use gltf::json::{Root, Value, mesh::Semantic};
 use serde::Deserialize;
 
+use super::bytes::Bytes;
 use super::extensions;
 use super::note::Note;
 use super::uri::{Folder, read_uri};
@@ -19,7 +22,7 @@ use super::{DocumentProblem, ReadError};
 use crate::mesh::extension_names;
 
 /// A glTF file whose references are all in range.
-pub(super) struct Document {
+pub(super) struct Document<'a> {
     pub(super) root: Root,
     /// As many as there are nodes.
     pub(super) placements: Vec<Placement>,
@@ -28,7 +31,7 @@ pub(super) struct Document {
     /// How many animations were left out.
     pub(super) animations: usize,
     /// `None` where a buffer has neither a URI nor the binary chunk.
-    pub(super) buffers: Vec<Option<Vec<u8>>>,
+    pub(super) buffers: Vec<Option<Bytes<'a>>>,
 }
 
 /// What surfaces look like, in the words of the file.
@@ -53,11 +56,11 @@ pub(super) struct Placement {
 }
 
 /// Takes apart a GLB or glTF file; buffers outside it are looked for in `folder`.
-pub(super) fn read_document(
-    bytes: &[u8],
+pub(super) fn read_document<'a>(
+    bytes: Bytes<'a>,
     folder: &Folder,
     notes: &mut Vec<Note>,
-) -> Result<Document, ReadError> {
+) -> Result<Document<'a>, ReadError> {
     let (json, mut binary) = split(bytes)?;
     let mut value: Value = serde_json::from_slice(&json).map_err(ReadError::Json)?;
     check_version(&value)?;
@@ -138,19 +141,29 @@ fn drop_nulls(value: &mut Value) {
     }
 }
 
+/// Whether something is a GLB file, by its first bytes.
+pub(super) fn is_glb(bytes: &Bytes) -> Result<bool, ReadError> {
+    let first = bytes.part(0..bytes.len().min(4), &mut vec![])? == b"glTF";
+    Ok(first)
+}
+
 /// The JSON and, in a GLB file that has one, the binary chunk.
-fn split(bytes: &[u8]) -> Result<(Vec<u8>, Option<Vec<u8>>), ReadError> {
-    if !bytes.starts_with(b"glTF") {
-        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-        return Ok((text.to_vec(), None));
+fn split(bytes: Bytes) -> Result<(Vec<u8>, Option<Bytes>), ReadError> {
+    if !is_glb(&bytes)? {
+        let mut text = bytes.into_vec()?;
+        if text.starts_with(b"\xef\xbb\xbf") {
+            text.drain(..3);
+        }
+        return Ok((text, None));
     }
-    // The crate subtracts the header from the announced length without looking.
     let length = |expected| ReadError::GlbLength {
         found: bytes.len(),
         expected,
     };
+    let mut header = vec![];
+    let header = bytes.part(0..bytes.len().min(12), &mut header)?;
     let word = |at: usize| -> Option<u32> {
-        let word = bytes.get(at..at + 4)?;
+        let word = header.get(at..at + 4)?;
         Some(u32::from_le_bytes(word.try_into().ok()?))
     };
     let (Some(version), Some(announced)) = (word(4), word(8)) else {
@@ -165,8 +178,45 @@ fn split(bytes: &[u8]) -> Result<(Vec<u8>, Option<Vec<u8>>), ReadError> {
     if announced < 20 || announced > bytes.len() {
         return Err(length(announced.max(20)));
     }
-    let glb = gltf::Glb::from_slice(&bytes[..announced]).map_err(ReadError::Glb)?;
-    Ok((glb.json.into_owned(), glb.bin.map(|bin| bin.into_owned())))
+    let json = chunk(&bytes, 12..announced, ChunkType::Json)?;
+    let rest = json.end..announced;
+    let text = bytes.part(json, &mut vec![])?.to_vec();
+    let binary = match rest.is_empty() {
+        true => None,
+        false => Some(chunk(&bytes, rest, ChunkType::Bin)?),
+    };
+    Ok((text, binary.map(|binary| bytes.cut(binary))))
+}
+
+/// The content of the first chunk in a part of a GLB file, which has to be of a certain type.
+fn chunk(
+    bytes: &Bytes,
+    part: Range<usize>,
+    expected: ChunkType,
+) -> Result<Range<usize>, ReadError> {
+    let wrong = |problem| Err(ReadError::Glb(gltf::Error::Binary(problem)));
+    let mut header = vec![];
+    let content = part.end.min(part.start + 8);
+    let header = bytes.part(part.start..content, &mut header)?;
+    let &[a, b, c, d, ref name @ ..] = header else {
+        return wrong(GlbProblem::Io(std::io::ErrorKind::UnexpectedEof.into()));
+    };
+    let length = u32::from_le_bytes([a, b, c, d]);
+    match (name, expected) {
+        (b"JSON", ChunkType::Json) | (b"BIN\0", ChunkType::Bin) => {}
+        (b"JSON", _) => return wrong(GlbProblem::ChunkType(ChunkType::Json)),
+        (b"BIN\0", _) => return wrong(GlbProblem::ChunkType(ChunkType::Bin)),
+        (&[a, b, c, d], _) => return wrong(GlbProblem::UnknownChunkType([a, b, c, d])),
+        _ => return wrong(GlbProblem::Io(std::io::ErrorKind::UnexpectedEof.into())),
+    }
+    if length as usize > part.end - content {
+        return wrong(GlbProblem::ChunkLength {
+            ty: expected,
+            length,
+            length_read: part.end - content,
+        });
+    }
+    Ok(content..content + length as usize)
 }
 
 fn check_version(value: &Value) -> Result<(), ReadError> {
@@ -296,8 +346,9 @@ fn check_references(root: &Root) -> Result<(), ReadError> {
 mod tests {
     use super::*;
 
-    fn read(json: &str) -> Result<Document, ReadError> {
-        read_document(json.as_bytes(), &Folder::new(".".as_ref()), &mut vec![])
+    fn read(json: &str) -> Result<Document<'_>, ReadError> {
+        let bytes = Bytes::Held(json.as_bytes().into());
+        read_document(bytes, &Folder::new(".".as_ref()), &mut vec![])
     }
 
     fn message(json: &str) -> String {
@@ -358,6 +409,7 @@ mod tests {
     #[test]
     fn a_cut_glb_says_how_long_it_should_be() {
         let header = [&b"glTF"[..], &2u32.to_le_bytes(), &60u32.to_le_bytes()].concat();
+        let split = |bytes: &[u8]| split(Bytes::Held(bytes.into())).map(|_| ());
         let error = split(&header).unwrap_err().to_string();
         assert_eq!(error, "a GLB file of 12 bytes, expected 60: it is cut off");
         assert!(split(&header[..7]).is_err());

@@ -8,6 +8,7 @@ use gltf::json::mesh::{Mode, Semantic};
 use gltf::json::{Extras, Root};
 use serde_json::{Map, Value};
 
+use super::bytes::Bytes;
 use super::deform::{apply_morph, apply_skin, joint_transforms, morph_weights};
 use super::document::{Document, read_document};
 use super::instances::read_instances;
@@ -37,6 +38,11 @@ struct Piece {
 ///
 /// Anything that keeps a part of the surface from being read as glTF 2.0 defines it.
 pub fn read_gltf_bytes(bytes: &[u8], folder: &Path) -> Result<(Model, Findings), ReadError> {
+    read_gltf(Bytes::Held(bytes.into()), folder)
+}
+
+/// Reads a GLB or glTF file.
+pub(super) fn read_gltf(bytes: Bytes, folder: &Path) -> Result<(Model, Findings), ReadError> {
     let mut notes = vec![];
     let folder = Folder::new(folder);
     let document = read_document(bytes, &folder, &mut notes)?;
@@ -205,9 +211,10 @@ fn read_node(
         let material = material
             .map(|index| materials.material(index, &source.mesh, sets, notes))
             .transpose()?;
-        for transform in &transforms {
-            let mesh = mesh.clone().transformed(transform);
-            if !mesh.positions().iter().all(|position| position.is_finite()) {
+        let meshes = std::iter::repeat_n(mesh, transforms.len());
+        for (mesh, transform) in meshes.zip(&transforms) {
+            let mesh = mesh.transformed(transform);
+            if !mesh.is_finite() {
                 return Err(nodes::error(root, node, NodeProblem::NotFinite));
             }
             pieces.push(Piece {

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::ReadError;
+use super::bytes::Bytes;
 use super::document::Document;
 use super::note::{Note, add_note};
 use super::uri::{Folder, read_uri};
@@ -18,7 +19,7 @@ use crate::mesh::{
 
 /// Materials, textures and images of a file, each made once and shared.
 pub(super) struct Materials<'a> {
-    document: &'a Document,
+    document: &'a Document<'a>,
     folder: &'a Folder<'a>,
     materials: HashMap<usize, Arc<Material>>,
     fitted: Fitted,
@@ -29,7 +30,7 @@ pub(super) struct Materials<'a> {
 
 impl<'a> Materials<'a> {
     /// None so far; external images are looked for in `folder`.
-    pub(super) fn new(document: &'a Document, folder: &'a Folder<'a>) -> Self {
+    pub(super) fn new(document: &'a Document<'a>, folder: &'a Folder<'a>) -> Self {
         Self {
             document,
             folder,
@@ -178,11 +179,14 @@ impl<'a> Materials<'a> {
         let bytes = match (uri, view.and_then(|view| view.as_u64())) {
             (Some(uri), _) => {
                 let place = format!("images[{index}].uri");
-                read_uri(uri, self.folder, u64::MAX, &place).map_err(|error| reason(&error))?
+                let bytes = read_uri(uri, self.folder, u64::MAX, &place);
+                let bytes = bytes.and_then(Bytes::into_vec);
+                bytes.map_err(|error| reason(&error))?
             }
             (None, Some(view)) => {
                 let bytes = self.document.view(view as usize);
-                bytes.map_err(|error| reason(&error))?.to_vec()
+                let bytes = bytes.map_err(|error| reason(&error))?;
+                bytes.into_vec().map_err(|error| reason(&error))?
             }
             (None, None) => return Err("it has neither a uri nor a bufferView".to_owned()),
         };

@@ -4,6 +4,7 @@
 //! out is a note.
 
 mod accessor;
+mod bytes;
 mod deform;
 mod document;
 mod error;
@@ -21,6 +22,7 @@ mod obj;
 mod obj_lines;
 mod polygon;
 mod primitive;
+mod run;
 mod uri;
 
 use std::path::{Path, PathBuf};
@@ -32,8 +34,10 @@ pub use note::Note;
 use glam::DVec3;
 
 use crate::mesh::Model;
+use bytes::Bytes;
+use document::is_glb;
+use gltf_model::read_gltf;
 use obj::read_obj_bytes;
-use uri::read_file;
 
 /// What there is to know about a model beside the model.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -50,8 +54,13 @@ const FARTHEST: f64 = 1e75;
 
 /// The model, if nothing in it is so far away that computing with it would overflow.
 fn checked(model: Model) -> Result<Model, ReadError> {
+    let largest = |position: &DVec3| position.abs().max_element();
     for part in &model.parts {
-        let largest = |position: &DVec3| position.abs().max_element();
+        // Its bounds are wanted sooner or later, and one look at all vertices is enough.
+        let (low, high) = part.mesh().bounds().unwrap_or_default();
+        if largest(&low) <= FARTHEST && largest(&high) <= FARTHEST {
+            continue;
+        }
         let positions = part.mesh().positions();
         if let Some(vertex) = positions.iter().position(|p| largest(p) > FARTHEST) {
             return Err(ReadError::TooFar {
@@ -79,16 +88,19 @@ pub fn read_model(path: &Path) -> Result<(Model, Findings), ReadError> {
     let extension = path.extension().unwrap_or_default();
     let extension = extension.to_string_lossy().to_lowercase();
     let folder = path.parent().unwrap_or(Path::new(""));
-    let bytes = read_file(path, u64::MAX)?;
-    let (model, mut findings) = match extension.as_str() {
-        "glb" | "gltf" => read_gltf_bytes(&bytes, folder),
-        "obj" => {
-            let stem = path.file_stem().unwrap_or_default();
-            read_obj_bytes(&bytes, folder, &stem.to_string_lossy())
-        }
-        _ if bytes.starts_with(b"glTF") => read_gltf_bytes(&bytes, folder),
-        _ => Err(ReadError::UnknownExtension { extension }),
-    }?;
+    let bytes = Bytes::open(path, u64::MAX)?;
+    let is_gltf = match extension.as_str() {
+        "glb" | "gltf" => true,
+        "obj" => false,
+        _ if is_glb(&bytes)? => true,
+        _ => return Err(ReadError::UnknownExtension { extension }),
+    };
+    let (model, mut findings) = if is_gltf {
+        read_gltf(bytes, folder)?
+    } else {
+        let stem = path.file_stem().unwrap_or_default();
+        read_obj_bytes(&bytes.into_vec()?, folder, &stem.to_string_lossy())?
+    };
     findings.files.insert(0, path.to_owned());
     Ok((model, findings))
 }

@@ -171,13 +171,15 @@ fn is_visible(node: &Node) -> bool {
 mod tests {
     use super::super::uri::Folder;
 
+    use super::super::bytes::Bytes;
     use super::super::document::read_document;
     use super::*;
 
     fn read(rest: &str) -> Result<(Tree, Vec<Note>), ReadError> {
         let json = format!(r#"{{"asset": {{"version": "2.0"}}, {rest}}}"#);
         let mut notes = vec![];
-        let document = read_document(json.as_bytes(), &Folder::new(".".as_ref()), &mut notes)?;
+        let bytes = Bytes::Held(json.as_bytes().into());
+        let document = read_document(bytes, &Folder::new(".".as_ref()), &mut notes)?;
         read_tree(&document, &mut notes).map(|tree| (tree, notes))
     }
 

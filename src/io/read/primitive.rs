@@ -3,7 +3,9 @@
 //! glTF 2.0, section 3.7.2. Attributes are read as what they mean, whatever they are stored as;
 //! `KHR_mesh_quantization` only widens what they may be stored as.
 
-use glam::{DVec3, DVec4, Vec2, Vec4};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use glam::{DVec2, DVec3, DVec4, Vec4};
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
@@ -13,8 +15,9 @@ use super::accessor::{Expected, Numbers};
 use super::document::Document;
 use super::normals::replace_zero_normals;
 use super::note::{Note, add_note};
+use super::run::Run;
 use super::{AccessorProblem, ReadError};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, check_triangles, unit_or_zero};
 
 const VECTOR: Expected = Expected {
     types: &[Type::Vec3],
@@ -51,7 +54,7 @@ const FLOAT_OR_SMALL: [ComponentType; 5] = [
 
 /// A primitive, and what errors and notes about it need.
 pub(super) struct Source<'a> {
-    pub(super) document: &'a Document,
+    pub(super) document: &'a Document<'a>,
     pub(super) primitive: &'a Primitive,
     /// Such as `meshes[2].primitives[0] (mesh "Wheel")`.
     pub(super) place: String,
@@ -66,6 +69,38 @@ pub(super) struct Shape {
     pub(super) tangents: Option<Vec<DVec4>>,
     /// Whether the triangles have come to face the other way.
     pub(super) mirrored: bool,
+    /// Whether all positions and normals were seen to be finite, and the normals brought to unit length, each of
+    /// which has one.
+    pub(super) is_sound: bool,
+}
+
+/// The triangles of a primitive.
+#[derive(Default)]
+struct Triangles {
+    corners: Vec<[u32; 3]>,
+    /// Whether they were seen to use nothing but vertices that are there.
+    are_sound: bool,
+}
+
+/// Whether something holds of all that several threads look at.
+struct Sound(AtomicBool);
+
+impl Default for Sound {
+    fn default() -> Self {
+        Self(true.into())
+    }
+}
+
+impl Sound {
+    fn and(&self, holds: bool) {
+        if !holds {
+            self.0.store(false, Ordering::Relaxed);
+        }
+    }
+
+    fn get(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
 }
 
 /// The mesh of a primitive, its shape changed by `deform`; `None` without triangles.
@@ -77,48 +112,56 @@ pub(super) fn read_primitive(
     // In this order, because a count is only proven by the bytes behind it.
     let mut shape = source.shape()?;
     let mut triangles = source.triangles(shape.positions.len(), notes)?;
-    if triangles.is_empty() {
+    if triangles.corners.is_empty() {
         let place = source.place.clone();
         add_note(notes, Note::Empty { place });
         return Ok(None);
     }
     deform(&mut shape)?;
     if shape.mirrored {
-        triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+        let corners = triangles.corners.iter_mut();
+        corners.for_each(|corners| corners.swap(1, 2));
     }
     let vertices = shape.positions.len();
     let wrong = |problem| ReadError::Mesh {
         place: source.place.clone(),
         problem,
     };
-    let mut mesh = Mesh::new(shape.positions, triangles).map_err(wrong)?;
-    if let Some(normals) = shape.normals {
-        mesh = mesh.with_normals(normals).map_err(wrong)?;
+    if !triangles.are_sound {
+        check_triangles(&triangles.corners, vertices).map_err(wrong)?;
     }
+    let mut mesh = if shape.is_sound {
+        let (positions, normals) = (shape.positions, shape.normals);
+        Mesh::from_parts(positions, triangles.corners, normals, None, vec![], None)
+    } else {
+        let mesh = Mesh::new(shape.positions, triangles.corners).map_err(wrong)?;
+        match shape.normals {
+            Some(normals) => mesh.with_normals(normals).map_err(wrong)?,
+            None => mesh,
+        }
+    };
     if let Some(tangents) = shape.tangents {
         mesh = mesh.with_tangents(tangents).map_err(wrong)?;
     }
     let mut sets = 0;
     while let Some(index) = source.attribute(&Semantic::TexCoords(sets)) {
         let name = Semantic::TexCoords(sets).to_string();
-        let numbers = source.numbers(index, &TEXTURE_COORDINATE, &name, vertices)?;
-        let pairs = numbers.elements();
-        let set = pairs.map(|uv| Vec2::new(uv[0] as f32, uv[1] as f32));
-        mesh = mesh
-            .with_texture_coordinates(set.collect())
-            .map_err(wrong)?;
+        let pair = |uv: [f64; 2]| DVec2::from_array(uv).as_vec2();
+        let set = source.elements(index, &TEXTURE_COORDINATE, &name, vertices, pair)?;
+        mesh = mesh.with_texture_coordinates(set).map_err(wrong)?;
         sets += 1;
     }
     if let Some(index) = source.attribute(&Semantic::Colors(0)) {
-        let numbers = source.numbers(index, &COLOR, "COLOR_0", vertices)?;
-        let full = source.full_scale(index);
-        let colors = numbers.elements().map(|c| color(c, full)).collect();
+        let colors = source.colors(index, vertices)?;
         // Checked before they are clamped, which would make a number of NaN.
         mesh = mesh.with_colors(colors).map_err(wrong)?;
         mesh = clamp_colors(mesh, source, notes).map_err(wrong)?;
     }
     source.note_attributes(sets, notes);
-    let (mesh, replaced) = replace_zero_normals(mesh);
+    let (mesh, replaced) = match shape.is_sound {
+        true => (mesh, 0),
+        false => replace_zero_normals(mesh),
+    };
     if replaced > 0 {
         let note = Note::Normals {
             mesh: source.mesh.clone(),
@@ -144,9 +187,32 @@ impl Source<'_> {
         name: &str,
         vertices: usize,
     ) -> Result<Numbers, ReadError> {
+        let place = self.check_count(index, name, vertices)?;
+        self.document.numbers(index, expected, &place)
+    }
+
+    /// What `make` makes of the elements of an accessor that has to have one for each vertex.
+    fn elements<T: Copy + Default + Send, const N: usize>(
+        &self,
+        index: Index<Accessor>,
+        expected: &Expected,
+        name: &str,
+        vertices: usize,
+        make: impl Fn([f64; N]) -> T + Sync,
+    ) -> Result<Vec<T>, ReadError> {
+        let place = self.check_count(index, name, vertices)?;
+        self.document.elements(index, expected, &place, make)
+    }
+
+    /// Before reading, because it may be a count that no memory has room for; the place for further errors.
+    fn check_count(
+        &self,
+        index: Index<Accessor>,
+        name: &str,
+        vertices: usize,
+    ) -> Result<String, ReadError> {
         let place = format!("{}, {name}", self.place);
         let found = self.document.count(index);
-        // Before reading: it may be a count that no memory has room for.
         if found != vertices {
             return Err(ReadError::Accessor {
                 place,
@@ -157,7 +223,7 @@ impl Source<'_> {
                 },
             });
         }
-        self.document.numbers(index, expected, &place)
+        Ok(place)
     }
 
     /// Vectors for all vertices.
@@ -167,12 +233,27 @@ impl Source<'_> {
         name: &str,
         vertices: usize,
     ) -> Result<Vec<DVec3>, ReadError> {
-        let numbers = self.numbers(index, &VECTOR, name, vertices)?;
-        Ok(numbers.elements().map(DVec3::from_slice).collect())
+        self.elements(index, &VECTOR, name, vertices, DVec3::from_array)
+    }
+
+    /// Colours for all vertices.
+    fn colors(&self, index: Index<Accessor>, vertices: usize) -> Result<Vec<Vec4>, ReadError> {
+        let full = self.full_scale(index);
+        match self.document.root.accessors[index.value()].type_ {
+            Checked::Valid(Type::Vec3) => {
+                let make = |c: [f64; 3]| color([c[0], c[1], c[2], full], full);
+                self.elements(index, &COLOR, "COLOR_0", vertices, make)
+            }
+            _ => {
+                let make = |c: [f64; 4]| color(c, full);
+                self.elements(index, &COLOR, "COLOR_0", vertices, make)
+            }
+        }
     }
 
     /// Positions, normals and tangents as they are stored.
     fn shape(&self) -> Result<Shape, ReadError> {
+        let sound = Sound::default();
         let mut positions = vec![];
         if let Some(index) = self.attribute(&Semantic::Positions) {
             let accessor = &self.document.root.accessors[index.value()];
@@ -183,38 +264,67 @@ impl Source<'_> {
                     problem: AccessorProblem::AllZeros,
                 });
             }
-            positions = self.vectors(index, "POSITION", self.document.count(index))?;
+            let count = self.document.count(index);
+            let make = |position: [f64; 3]| {
+                let position = DVec3::from_array(position);
+                sound.and(position.is_finite());
+                position
+            };
+            positions = self.elements(index, &VECTOR, "POSITION", count, make)?;
         }
-        let normals = self
-            .attribute(&Semantic::Normals)
-            .map(|index| self.vectors(index, "NORMAL", positions.len()))
-            .transpose()?;
+        let mut normals = None;
+        if let Some(index) = self.attribute(&Semantic::Normals) {
+            let count = positions.len();
+            let make = |normal: [f64; 3]| {
+                let unit = unit_or_zero(DVec3::from_array(normal));
+                sound.and(unit != DVec3::ZERO);
+                unit
+            };
+            if self.is_rigid() {
+                normals = Some(self.elements(index, &VECTOR, "NORMAL", count, make)?);
+            }
+            if !(self.is_rigid() && sound.get()) {
+                normals = Some(self.vectors(index, "NORMAL", count)?);
+            }
+        }
         let tangents = self
             .attribute(&Semantic::Tangents)
-            .map(|index| self.numbers(index, &TANGENT, "TANGENT", positions.len()))
-            .transpose()?
-            .map(|numbers| numbers.elements().map(DVec4::from_slice).collect());
+            .map(|index| {
+                let (count, make) = (positions.len(), DVec4::from_array);
+                self.elements(index, &TANGENT, "TANGENT", count, make)
+            })
+            .transpose()?;
         Ok(Shape {
             positions,
             normals,
             tangents,
             mirrored: false,
+            is_sound: self.is_rigid() && sound.get(),
         })
     }
 
-    fn triangles(
-        &self,
-        vertices: usize,
-        notes: &mut Vec<Note>,
-    ) -> Result<Vec<[u32; 3]>, ReadError> {
+    /// Whether nothing will change the shape.
+    fn is_rigid(&self) -> bool {
+        self.primitive.targets.is_none() && self.attribute(&Semantic::Joints(0)).is_none()
+    }
+
+    fn triangles(&self, vertices: usize, notes: &mut Vec<Note>) -> Result<Triangles, ReadError> {
         if vertices == 0 {
-            return Ok(vec![]);
+            return Ok(Triangles::default());
         }
+        let mode = self.primitive.mode.unwrap();
         let indices: Vec<u32> = match self.primitive.indices {
-            Some(index) => self.indices(index)?,
+            Some(index) => {
+                if mode == Mode::Triangles
+                    && let Some(corners) = self.plain_triangles(index, vertices)?
+                {
+                    let are_sound = true;
+                    return Ok(Triangles { corners, are_sound });
+                }
+                self.indices(index)?
+            }
             None => (0..u32::try_from(vertices).unwrap_or(u32::MAX)).collect(),
         };
-        let mode = self.primitive.mode.unwrap();
         let left_over = indices.len() % 3;
         if mode == Mode::Triangles && left_over > 0 {
             let note = Note::LeftOver {
@@ -223,7 +333,55 @@ impl Source<'_> {
             };
             add_note(notes, note);
         }
-        Ok(triangles(mode, &indices))
+        Ok(Triangles {
+            corners: triangles(mode, &indices),
+            are_sound: false,
+        })
+    }
+
+    /// Triangles that are stored one after another and all use vertices that are there; if they are not,
+    /// [`indices`](Self::indices) or the mesh will say what is wrong.
+    fn plain_triangles(
+        &self,
+        index: Index<Accessor>,
+        vertices: usize,
+    ) -> Result<Option<Vec<[u32; 3]>>, ReadError> {
+        let place = format!("{}, indices", self.place);
+        let Some(run) = self.document.plain(index, &INDEX, &place)? else {
+            return Ok(None);
+        };
+        if run.stride != run.size || run.count % 3 != 0 {
+            return Ok(None);
+        }
+        let of_three = Run {
+            stride: 3 * run.size,
+            size: 3 * run.size,
+            count: run.count / 3,
+            ..run
+        };
+        let (vertices, sound) = (vertices as u64, Sound::default());
+        let checked = |corners: [u32; 3], restart: u32| {
+            let limit = vertices.min(restart.into());
+            sound.and(corners.iter().all(|&index| u64::from(index) < limit));
+            corners
+        };
+        let corners = match run.size {
+            1 => of_three.map(|bytes| {
+                let corners = std::array::from_fn(|i| bytes[i].into());
+                checked(corners, u8::MAX.into())
+            }),
+            2 => of_three.map(|bytes| {
+                let words = bytes.as_chunks().0;
+                let corners = std::array::from_fn(|i| u16::from_le_bytes(words[i]).into());
+                checked(corners, u16::MAX.into())
+            }),
+            _ => of_three.map(|bytes| {
+                let words = bytes.as_chunks().0;
+                let corners = std::array::from_fn(|i| u32::from_le_bytes(words[i]));
+                checked(corners, u32::MAX)
+            }),
+        }?;
+        Ok(sound.get().then_some(corners))
     }
 
     fn indices(&self, index: Index<Accessor>) -> Result<Vec<u32>, ReadError> {
@@ -305,14 +463,8 @@ fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
     }
 }
 
-fn color(components: &[f64], full: f64) -> Vec4 {
-    let component = |i: usize| (components[i] / full) as f32;
-    let opacity = if components.len() == 4 {
-        component(3)
-    } else {
-        1.0
-    };
-    Vec4::new(component(0), component(1), component(2), opacity)
+fn color(components: [f64; 4], full: f64) -> Vec4 {
+    Vec4::from_array(components.map(|component| (component / full) as f32))
 }
 
 fn clamp_colors(
@@ -321,11 +473,8 @@ fn clamp_colors(
     notes: &mut Vec<Note>,
 ) -> Result<Mesh, crate::mesh::MeshError> {
     let colors = mesh.colors().unwrap_or_default();
-    let clamped: Vec<Vec4> = colors
-        .iter()
-        .map(|c| c.clamp(Vec4::ZERO, Vec4::ONE))
-        .collect();
-    let count = colors.iter().zip(&clamped).filter(|(a, b)| a != b).count();
+    let clamp = |color: Vec4| color.clamp(Vec4::ZERO, Vec4::ONE);
+    let count = colors.iter().filter(|&&c| clamp(c) != c).count();
     if count == 0 {
         return Ok(mesh);
     }
@@ -334,6 +483,7 @@ fn clamp_colors(
         count,
     };
     add_note(notes, note);
+    let clamped = colors.iter().copied().map(clamp).collect();
     mesh.with_colors(clamped)
 }
 
@@ -364,14 +514,6 @@ mod tests {
         assert_eq!(
             triangles(Mode::TriangleStrip, &indices),
             [[0, 1, 2], [1, 3, 2], [4, 5, 6], [5, 7, 6]]
-        );
-    }
-
-    #[test]
-    fn a_colour_without_opacity_is_opaque() {
-        assert_eq!(
-            color(&[0.0, 127.5, 255.0], 255.0),
-            Vec4::new(0.0, 0.5, 1.0, 1.0)
         );
     }
 }

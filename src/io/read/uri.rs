@@ -4,13 +4,12 @@
 //! and data URIs as in RFC 2397. Everything else would have to be fetched and is refused.
 
 use std::cell::RefCell;
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use data_url::DataUrl;
 use percent_encoding::percent_decode_str;
 
+use super::bytes::Bytes;
 use super::{ReadError, UriProblem};
 
 /// The folder of a file, in which those that it refers to are looked for; keeps account of what was opened.
@@ -33,7 +32,12 @@ impl<'a> Folder<'a> {
 
     /// The bytes of a file, at most `limit` of them.
     pub(super) fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, ReadError> {
-        let bytes = read_file(path, limit)?;
+        self.open(path, limit)?.into_vec()
+    }
+
+    /// At most `limit` bytes of a file, to be read when they are wanted.
+    fn open(&self, path: &Path, limit: u64) -> Result<Bytes<'static>, ReadError> {
+        let bytes = Bytes::open(path, limit)?;
         self.opened.borrow_mut().push(path.to_owned());
         Ok(bytes)
     }
@@ -57,34 +61,22 @@ pub(super) fn read_uri(
     folder: &Folder,
     limit: u64,
     place: &str,
-) -> Result<Vec<u8>, ReadError> {
+) -> Result<Bytes<'static>, ReadError> {
     let wrong = |problem| ReadError::Uri {
         place: place.to_owned(),
         problem,
     };
     match scheme(uri) {
-        Some("data") => decode_data(uri).map_err(wrong),
+        Some("data") => Ok(Bytes::Held(decode_data(uri).map_err(wrong)?.into())),
         Some(scheme) => Err(wrong(UriProblem::Scheme {
             uri: shortened(uri),
             scheme: scheme.to_owned(),
         })),
         None => {
             let relative = decode_path(uri).map_err(wrong)?;
-            folder.read(&folder.path.join(relative), limit)
+            folder.open(&folder.path.join(relative), limit)
         }
     }
-}
-
-/// The bytes of a file, at most `limit` of them.
-pub(super) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, ReadError> {
-    let mut bytes = vec![];
-    File::open(path)
-        .and_then(|file| file.take(limit).read_to_end(&mut bytes))
-        .map_err(|source| ReadError::File {
-            path: path.to_owned(),
-            source,
-        })?;
-    Ok(bytes)
 }
 
 /// What stands before the first colon, if that makes a scheme (RFC 3986, section 3.1).
@@ -137,7 +129,8 @@ mod tests {
             &Folder::new(Path::new("nowhere")),
             100,
             "buffers[0].uri",
-        )
+        )?
+        .into_vec()
     }
 
     #[test]

@@ -4,15 +4,16 @@
 //! next to no one, while a scale of 0 hides and morph targets morph in all three.
 
 use std::collections::HashMap;
-use std::io::Write;
 
 use gltf::json::validation::Checked;
-use gltf::json::{self, Index, accessor, animation};
+use gltf::json::{self, Index, animation};
 use serde_json::{Value, json};
 
 use super::WriteError;
+use super::document::{Document, Use};
 use super::gltf::GltfFile;
 use super::layer::Layer;
+use super::pack::Bounds;
 use crate::photosurface::{Facts, Photosurface, step_label};
 
 /// What the one animation of a file is made of.
@@ -31,7 +32,7 @@ struct Keys {
     values: Index<json::Accessor>,
 }
 
-impl<W: Write> GltfFile<'_, W> {
+impl GltfFile<'_> {
     /// Shows a node during the frame of its step alone.
     pub(super) fn show_during_its_frame(
         &mut self,
@@ -54,7 +55,7 @@ impl<W: Write> GltfFile<'_, W> {
                     times.push(at(frame + 1));
                     scales.push(hidden);
                 }
-                self.keys(frame, &times, (&scales, accessor::Type::Vec3))?
+                self.keys(frame, &times, &scales)?
             }
         };
         let property = animation::Property::Scale;
@@ -101,7 +102,7 @@ impl<W: Write> GltfFile<'_, W> {
                 let times: Vec<_> = (0..=targets).map(at).collect();
                 let weight = |frame| (1..=targets).map(move |target| [f32::from(target == frame)]);
                 let weights: Vec<[f32; 1]> = (0..=targets).flat_map(weight).collect();
-                self.keys(targets, &times, (&weights, accessor::Type::Scalar))?
+                self.keys(targets, &times, &weights)?
             }
         };
         let property = animation::Property::MorphTargetWeights;
@@ -110,9 +111,13 @@ impl<W: Write> GltfFile<'_, W> {
     }
 
     /// Makes the animation of the tracks.
-    pub(super) fn animate(&mut self, frames_per_second: f64) {
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be written.
+    pub(super) fn animate(&mut self, frames_per_second: f64) -> Result<(), WriteError> {
         let tracks = std::mem::take(&mut self.tracks);
-        self.document.animations.push(&json::Animation {
+        self.document.animation(&json::Animation {
             channels: tracks.channels,
             samplers: tracks.samplers,
             name: Some("proper time".to_owned()),
@@ -124,18 +129,18 @@ impl<W: Write> GltfFile<'_, W> {
                 .expect("numbers are JSON"),
             ),
             extensions: None,
-        });
+        })
     }
 
     fn keys<const N: usize>(
         &mut self,
         name: usize,
         times: &[[f32; 1]],
-        (values, shape): (&[[f32; N]], accessor::Type),
+        values: &[[f32; N]],
     ) -> Result<Keys, WriteError> {
         let keys = Keys {
-            times: self.document.keys(times, accessor::Type::Scalar)?,
-            values: self.document.keys(values, shape)?,
+            times: key_frames(&mut self.document, times)?,
+            values: key_frames(&mut self.document, values)?,
         };
         self.tracks.keys.insert(name, keys);
         Ok(keys)
@@ -170,6 +175,14 @@ impl<W: Write> GltfFile<'_, W> {
             extras: None,
         });
     }
+}
+
+fn key_frames<const N: usize>(
+    document: &mut Document<'_>,
+    values: &[[f32; N]],
+) -> Result<Index<json::Accessor>, WriteError> {
+    let bounds = Bounds::of_all(values.len(), |index| values[index]);
+    document.vectors(values, |_, value| *value, Some(bounds), Use::Keys)
 }
 
 /// The name without its step.

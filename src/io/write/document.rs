@@ -1,11 +1,12 @@
 //! The two halves of a glTF file in the making: lists of JSON, and the data that they are about.
 //!
-//! Whatever is added is turned into text and bytes at once, so that a file of many steps takes no more memory than its
-//! JSON; the data goes on to a stream.
+//! Whatever is added is turned into text and bytes at once, and both go on to files where there is much of them: a file
+//! of many steps takes no more memory than one of a few.
 
 use std::collections::HashMap;
-use std::io::Write;
+use std::io::{self, Write};
 use std::marker::PhantomData;
+use std::path::Path;
 use std::sync::Arc;
 
 use gltf::json::validation::{Checked, USize64};
@@ -13,12 +14,15 @@ use gltf::json::{self, Index, accessor, buffer};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::WriteError;
-use super::pack::Local;
+use super::convert::write_items;
+use super::glb::Json;
+use super::pack::Bounds;
+use super::text::LongText;
+use super::{GltfOutput, WriteError};
 
 /// A list of a glTF file, as the text between its brackets.
 pub(super) struct List<T> {
-    text: Vec<u8>,
+    text: LongText,
     length: u32,
     /// Of what indices into the list are.
     kind: PhantomData<T>,
@@ -27,7 +31,7 @@ pub(super) struct List<T> {
 impl<T> Default for List<T> {
     fn default() -> Self {
         Self {
-            text: vec![],
+            text: LongText::default(),
             length: 0,
             kind: PhantomData,
         }
@@ -35,35 +39,37 @@ impl<T> Default for List<T> {
 }
 
 impl<T> List<T> {
-    pub(super) fn push(&mut self, item: &impl Serialize) -> Index<T> {
+    fn push(&mut self, item: &impl Serialize, directory: &Path) -> io::Result<Index<T>> {
         let separator: &[u8] = if self.length == 0 { b"\n" } else { b",\n" };
-        self.text.extend_from_slice(separator);
-        serde_json::to_writer(&mut self.text, item).expect("glTF is JSON");
+        self.text.add(directory, |text| {
+            text.extend_from_slice(separator);
+            Ok(serde_json::to_writer(text, item)?)
+        })?;
         self.length += 1;
-        Index::new(self.length - 1)
+        Ok(Index::new(self.length - 1))
     }
 
     pub(super) fn len(&self) -> u32 {
         self.length
     }
 
-    fn write(self, key: &str, root: &mut Vec<u8>) {
+    fn put_into(self, key: &str, json: &mut Json) {
         if self.length > 0 {
-            root.extend_from_slice(format!(",\n\"{key}\":[").as_bytes());
-            root.extend_from_slice(&self.text);
-            root.push(b']');
+            json.0.push(format!(",\n\"{key}\":[").into_bytes().into());
+            json.0.push(self.text);
+            json.0.push(b"]".to_vec().into());
         }
     }
 }
 
-/// A glTF file in the making whose data goes to `W`.
-pub(super) struct Document<W> {
+/// A glTF file in the making.
+pub(super) struct Document<'a> {
     pub(super) nodes: List<json::Node>,
-    pub(super) meshes: List<json::Mesh>,
-    pub(super) animations: List<json::Animation>,
+    meshes: List<json::Mesh>,
+    animations: List<json::Animation>,
     accessors: List<json::Accessor>,
     views: List<buffer::View>,
-    data: W,
+    output: GltfOutput<'a>,
     /// How much data there is.
     bytes: u64,
     /// What has been written already, by the address of the shared original, which is kept from being used again.
@@ -73,15 +79,24 @@ pub(super) struct Document<W> {
 /// Keeps something at its address.
 type Keep = Box<dyn std::any::Any + Send>;
 
-impl<W: Write> Document<W> {
-    pub(super) fn new(data: W) -> Self {
+/// What numbers are, to those who read them.
+#[derive(Clone, Copy)]
+pub(super) enum Use {
+    /// One for each vertex.
+    Vertices,
+    /// Key frames.
+    Keys,
+}
+
+impl<'a> Document<'a> {
+    pub(super) fn new(output: GltfOutput<'a>) -> Self {
         Self {
             nodes: List::default(),
             meshes: List::default(),
             animations: List::default(),
             accessors: List::default(),
             views: List::default(),
-            data,
+            output,
             bytes: 0,
             shared: HashMap::new(),
         }
@@ -94,14 +109,14 @@ impl<W: Write> Document<W> {
     /// Those of `make`.
     pub(super) fn shared<T: Send + Sync + 'static>(
         &mut self,
-        original: &Arc<[T]>,
+        original: &Arc<Vec<T>>,
         make: impl FnOnce(&mut Self) -> Result<Index<json::Accessor>, WriteError>,
     ) -> Result<Index<json::Accessor>, WriteError> {
         // What is not shared now never will be, and need not be kept in memory.
         if Arc::strong_count(original) == 1 {
             return make(self);
         }
-        let address = original.as_ptr() as usize;
+        let address = Arc::as_ptr(original) as usize;
         if let Some((_, accessor)) = self.shared.get(&address) {
             return Ok(*accessor);
         }
@@ -111,72 +126,102 @@ impl<W: Write> Document<W> {
         Ok(accessor)
     }
 
-    /// Positions relative to an offset, with their bounds.
-    pub(super) fn local(&mut self, local: &Local) -> Result<Index<json::Accessor>, WriteError> {
-        let bounds = Some((local.min.to_vec(), local.max.to_vec()));
-        let kind = (accessor::ComponentType::F32, accessor::Type::Vec3);
-        let target = Some(buffer::Target::ArrayBuffer);
-        let view = self.view(&bytes_of(&local.values), target)?;
-        Ok(self.accessor(view, local.values.len(), kind, false, bounds))
+    pub(super) fn node(&mut self, node: &impl Serialize) -> Result<Index<json::Node>, WriteError> {
+        Ok(self.nodes.push(node, self.output.directory())?)
     }
 
-    /// A vector for each vertex.
-    pub(super) fn vectors<const N: usize>(
+    pub(super) fn mesh(&mut self, mesh: &impl Serialize) -> Result<Index<json::Mesh>, WriteError> {
+        Ok(self.meshes.push(mesh, self.output.directory())?)
+    }
+
+    pub(super) fn animation(&mut self, animation: &json::Animation) -> Result<(), WriteError> {
+        self.animations.push(animation, self.output.directory())?;
+        Ok(())
+    }
+
+    /// Small vectors, one for each of `values`, which are told by their numbers too.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be written.
+    pub(super) fn vectors<T: Sync, const N: usize>(
         &mut self,
-        values: &[[f32; N]],
-        shape: accessor::Type,
+        values: &[T],
+        vector: impl Fn(usize, &T) -> [f32; N] + Sync,
+        bounds: Option<Bounds<N>>,
+        of_what: Use,
     ) -> Result<Index<json::Accessor>, WriteError> {
-        let view = self.view(&bytes_of(values), Some(buffer::Target::ArrayBuffer))?;
+        let target = match of_what {
+            Use::Vertices => Some(buffer::Target::ArrayBuffer),
+            Use::Keys => None,
+        };
+        let shape = match N {
+            1 => accessor::Type::Scalar,
+            2 => accessor::Type::Vec2,
+            3 => accessor::Type::Vec3,
+            _ => accessor::Type::Vec4,
+        };
+        let view = self.view(4 * N * values.len(), target, |output| {
+            let item = |index| vector(index, &values[index]).map(f32::to_le_bytes);
+            write_items(output, values.len(), item)
+        })?;
         let kind = (accessor::ComponentType::F32, shape);
-        Ok(self.accessor(view, values.len(), kind, false, None))
+        self.accessor(view, values.len(), kind, bounds)
     }
 
     /// Four bytes for each vertex, from 0 to 1.
-    pub(super) fn colors(&mut self, values: &[u8]) -> Result<Index<json::Accessor>, WriteError> {
-        let view = self.view(values, Some(buffer::Target::ArrayBuffer))?;
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be written.
+    pub(super) fn colors<T: Sync>(
+        &mut self,
+        values: &[T],
+        color: impl Fn(&T) -> [u8; 4] + Sync,
+    ) -> Result<Index<json::Accessor>, WriteError> {
+        let target = Some(buffer::Target::ArrayBuffer);
+        let view = self.view(4 * values.len(), target, |output| {
+            write_items(output, values.len(), |index| [color(&values[index])])
+        })?;
         let kind = (accessor::ComponentType::U8, accessor::Type::Vec4);
-        Ok(self.accessor(view, values.len() / 4, kind, true, None))
+        self.accessor::<1>(view, values.len(), kind, None)
     }
 
     /// The corners of triangles.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be written.
     pub(super) fn indices(
         &mut self,
         triangles: &[[u32; 3]],
     ) -> Result<Index<json::Accessor>, WriteError> {
-        let indices = triangles.as_flattened();
-        let bytes: Vec<u8> = indices.iter().flat_map(|i| i.to_le_bytes()).collect();
-        let view = self.view(&bytes, Some(buffer::Target::ElementArrayBuffer))?;
+        let target = Some(buffer::Target::ElementArrayBuffer);
+        let view = self.view(size_of_val(triangles), target, |output| {
+            let item = |index: usize| triangles[index].map(u32::to_le_bytes);
+            write_items(output, triangles.len(), item)
+        })?;
         let kind = (accessor::ComponentType::U32, accessor::Type::Scalar);
-        Ok(self.accessor(view, indices.len(), kind, false, None))
+        self.accessor::<1>(view, 3 * triangles.len(), kind, None)
     }
 
-    /// Numbers that are no attributes of vertices: key frames.
-    pub(super) fn keys<const N: usize>(
-        &mut self,
-        values: &[[f32; N]],
-        shape: accessor::Type,
-    ) -> Result<Index<json::Accessor>, WriteError> {
-        let view = self.view(&bytes_of(values), None)?;
-        let bounds = |least: fn(f32, f32) -> f32, start: f32| {
-            let axis = |axis: usize| values.iter().fold(start, |b, v| least(b, v[axis]));
-            (0..N).map(axis).collect()
-        };
-        let low = bounds(f32::min, f32::INFINITY);
-        let high = bounds(f32::max, f32::NEG_INFINITY);
-        let kind = (accessor::ComponentType::F32, shape);
-        Ok(self.accessor(view, values.len(), kind, false, Some((low, high))))
+    /// An image as it is.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be written.
+    pub(super) fn image(&mut self, bytes: &[u8]) -> Result<Index<buffer::View>, WriteError> {
+        self.view(bytes.len(), None, |output| output.write_all(bytes))
     }
 
-    fn accessor(
+    fn accessor<const N: usize>(
         &mut self,
         view: Index<buffer::View>,
         count: usize,
         (component, shape): (accessor::ComponentType, accessor::Type),
-        normalized: bool,
-        bounds: Option<(Vec<f32>, Vec<f32>)>,
-    ) -> Index<json::Accessor> {
-        let (min, max) = bounds.unzip();
-        self.accessors.push(&json::Accessor {
+        bounds: Option<Bounds<N>>,
+    ) -> Result<Index<json::Accessor>, WriteError> {
+        let accessor = json::Accessor {
             buffer_view: Some(view),
             byte_offset: None,
             count: USize64::from(count),
@@ -185,70 +230,76 @@ impl<W: Write> Document<W> {
             extras: None,
             type_: Checked::Valid(shape),
             // f32 as f64 prints every digit that tells it apart, so that bounds read back exactly.
-            min: min.map(|min| json!(min)),
-            max: max.map(|max| json!(max)),
+            min: bounds.map(|bounds| json!(bounds.min.as_slice())),
+            max: bounds.map(|bounds| json!(bounds.max.as_slice())),
             name: None,
-            normalized,
+            normalized: component == accessor::ComponentType::U8,
             sparse: None,
-        })
+        };
+        Ok(self.accessors.push(&accessor, self.output.directory())?)
     }
 
-    pub(super) fn view(
+    fn view(
         &mut self,
-        bytes: &[u8],
+        length: usize,
         target: Option<buffer::Target>,
+        write: impl FnOnce(&mut GltfOutput<'a>) -> io::Result<()>,
     ) -> Result<Index<buffer::View>, WriteError> {
+        let lists = [
+            self.nodes.text.len(),
+            self.meshes.text.len(),
+            self.accessors.text.len(),
+            self.views.text.len(),
+        ];
+        let meshes = self.meshes.len() as usize;
+        self.output.describe(meshes, lists.iter().sum());
         // Every view starts at a multiple of four, whatever an image's length.
         let padding = self.bytes.next_multiple_of(4) - self.bytes;
-        self.data.write_all(&[0; 4][..padding as usize])?;
-        self.data.write_all(bytes)?;
+        self.output.write_all(&[0; 4][..padding as usize])?;
+        write(&mut self.output)?;
         let offset = self.bytes + padding;
-        self.bytes = offset + bytes.len() as u64;
-        Ok(self.views.push(&buffer::View {
+        self.bytes = offset + length as u64;
+        let view = buffer::View {
             buffer: Index::new(0),
-            byte_length: USize64::from(bytes.len()),
+            byte_length: USize64::from(length),
             byte_offset: Some(USize64(offset)),
             byte_stride: None,
             name: None,
             target: target.map(Checked::Valid),
             extensions: None,
             extras: None,
-        }))
+        };
+        Ok(self.views.push(&view, self.output.directory())?)
     }
 
-    /// How much data there is so far.
-    pub(super) fn bytes(&self) -> u64 {
-        self.bytes
-    }
-
-    /// The JSON, in which `others` come before the lists of this document, and the stream that the data went to.
-    pub(super) fn finish(mut self, others: &Value, uri: Option<String>) -> (Vec<u8>, W) {
+    /// Writes the JSON, in which `others` come before the lists of this document.
+    ///
+    /// # Errors
+    ///
+    /// More than 4 GiB in a GLB, or the file cannot be written.
+    pub(super) fn finish(self, others: &Value) -> Result<(), WriteError> {
         let mut buffers = List::<json::Buffer>::default();
-        buffers.push(&json::Buffer {
+        let buffer = json::Buffer {
             byte_length: USize64(self.bytes),
             name: None,
-            uri,
+            uri: self.output.binary_name(),
             extensions: None,
             extras: None,
-        });
+        };
+        buffers.push(&buffer, self.output.directory())?;
         let mut root = b"{".to_vec();
         for (index, (key, value)) in others.as_object().into_iter().flatten().enumerate() {
             let separator = if index == 0 { "" } else { "," };
-            root.extend_from_slice(format!("{separator}\n{}:{value}", json!(key)).as_bytes());
+            write!(root, "{separator}\n{}:{value}", json!(key))?;
         }
-        // Each is given back when it has been copied.
-        std::mem::take(&mut self.nodes).write("nodes", &mut root);
-        std::mem::take(&mut self.meshes).write("meshes", &mut root);
-        std::mem::take(&mut self.animations).write("animations", &mut root);
-        std::mem::take(&mut self.accessors).write("accessors", &mut root);
-        std::mem::take(&mut self.views).write("bufferViews", &mut root);
-        buffers.write("buffers", &mut root);
-        root.extend_from_slice(b"\n}");
-        (root, self.data)
+        let mut json = Json(vec![root.into()]);
+        self.nodes.put_into("nodes", &mut json);
+        self.meshes.put_into("meshes", &mut json);
+        self.animations.put_into("animations", &mut json);
+        self.accessors.put_into("accessors", &mut json);
+        self.views.put_into("bufferViews", &mut json);
+        buffers.put_into("buffers", &mut json);
+        json.0.push(b"\n}".to_vec().into());
+        self.output.finish(json, self.bytes)
     }
-}
-
-fn bytes_of<const N: usize>(values: &[[f32; N]]) -> Vec<u8> {
-    let numbers = values.as_flattened().iter();
-    numbers.flat_map(|number| number.to_le_bytes()).collect()
 }

@@ -28,6 +28,19 @@ pub fn destination(path: &Path) -> Result<PathBuf, WriteError> {
     .map_err(|source| io_error(path, source))
 }
 
+/// What a file is, to those who write it.
+pub enum Target<'a> {
+    /// Something with places, empty as yet.
+    File {
+        /// To be read and written anywhere.
+        file: &'a mut File,
+        /// Where the file itself has to find room, and what has to wait may too.
+        directory: &'a Path,
+    },
+    /// Something that takes one byte after the other.
+    Stream(&'a mut dyn Write),
+}
+
 /// Writes a file with `content`; it appears whole or not at all, and what stood there is kept until then.
 ///
 /// A link is followed; what is no regular file (a device, a pipe) is written to as it is.
@@ -39,19 +52,43 @@ pub fn write_whole(
     path: &Path,
     content: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
+    write_whole_target(path, |target| match target {
+        Target::File { file, .. } => {
+            let mut writer = BufWriter::new(file);
+            content(&mut writer)?;
+            Ok(writer.flush()?)
+        }
+        Target::Stream(stream) => content(stream),
+    })
+}
+
+/// As [`write_whole`], for content that does not come in the order in which it stands in the file.
+///
+/// # Errors
+///
+/// As [`write_whole`].
+pub fn write_whole_target(
+    path: &Path,
+    content: impl FnOnce(Target<'_>) -> Result<(), WriteError>,
+) -> Result<(), WriteError> {
+    let here = |source| io_error(path, source);
+    let told = |error| match error {
+        WriteError::Stream(source) => here(source),
+        other => other,
+    };
     match Destination::of(path)? {
         Destination::Special(place) => {
-            let file = File::options()
-                .write(true)
-                .open(place)
-                .map_err(|source| io_error(path, source))?;
-            fill(file, path, content).map(drop)
+            let file = File::options().write(true).open(place).map_err(here)?;
+            let mut writer = BufWriter::new(file);
+            content(Target::Stream(&mut writer)).map_err(told)?;
+            writer.flush().map_err(here)
         }
         Destination::Regular(place) => {
-            let file = temporary_beside(&place).map_err(|source| io_error(path, source))?;
-            let file = fill(file, path, content)?;
-            file.persist(&place)
-                .map_err(|source| io_error(path, source))
+            let mut unfinished = temporary_beside(&place).map_err(here)?;
+            let directory = directory_of(&place);
+            let file = unfinished.file();
+            content(Target::File { file, directory }).map_err(told)?;
+            unfinished.persist(&place).map_err(here)
         }
     }
 }
@@ -156,6 +193,11 @@ impl Unfinished {
         Ok(Self { file, path })
     }
 
+    fn file(&mut self) -> &mut File {
+        let file = self.file.as_mut();
+        file.expect("there until it is persisted").as_file_mut()
+    }
+
     fn persist(mut self, place: &Path) -> std::io::Result<()> {
         let file = self.file.take().expect("only this takes it, and only once");
         // Held while the file gets its name: it is either unfinished or finished.
@@ -163,16 +205,6 @@ impl Unfinished {
         let persisted = file.persist(place);
         drop(unfinished);
         persisted.map(drop).map_err(|error| error.error)
-    }
-}
-
-impl Write for Unfinished {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.file.as_mut().map_or(Ok(0), |file| file.write(bytes))
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.file.as_mut().map_or(Ok(()), Write::flush)
     }
 }
 
@@ -194,21 +226,6 @@ fn temporary_beside(place: &Path) -> std::io::Result<Unfinished> {
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     Unfinished::begin(|| builder.tempfile_in(directory_of(place)))
-}
-
-fn fill<F: Write>(
-    file: F,
-    path: &Path,
-    content: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
-) -> Result<F, WriteError> {
-    let mut writer = BufWriter::new(file);
-    content(&mut writer).map_err(|error| match error {
-        WriteError::Stream(source) => io_error(path, source),
-        other => other,
-    })?;
-    writer
-        .into_inner()
-        .map_err(|error| io_error(path, error.into_error()))
 }
 
 fn io_error(path: &Path, source: std::io::Error) -> WriteError {

@@ -4,44 +4,30 @@
 //! pyvista and three.js all read alike. Data shared between steps (triangles, texture coordinates,
 //! colours, materials, images) is written once.
 
-use std::io::{Read, Seek, Write};
+use std::io::Write;
 use std::sync::Arc;
 
-use glam::{DVec3, DVec4};
+use glam::{DVec3, DVec4, Vec2};
 use gltf::json::validation::Checked;
-use gltf::json::{self, Index, accessor, mesh::Semantic};
-use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
+use gltf::json::{self, Index, mesh::Semantic};
 use serde_json::{Value, json};
 
-use super::document::Document;
+use super::document::{Document, Use};
 use super::layer::{Layer, Scalar};
 use super::materials::Materials;
-use super::pack::{Local, Packed, pack};
-use super::{Export, Playback, WriteError};
+use super::pack::{Bounds, Packing};
+use super::{Export, GltfOutput, Playback, WriteError};
 use crate::mesh::{Material, Mesh, Part};
 use crate::photosurface::{Photosurface, SceneFacts, step_label};
 use crate::scene::Attributes;
-
-/// What may not stand in a relative reference as it is.
-const IN_REFERENCE: &AsciiSet = &CONTROLS
-    .add(b' ')
-    .add(b'"')
-    .add(b'#')
-    .add(b'%')
-    .add(b':')
-    .add(b'<')
-    .add(b'>')
-    .add(b'?')
-    .add(b'\\');
 
 /// Writes one GLB.
 ///
 /// # Errors
 ///
 /// A mesh without triangles, a number that `f32` cannot hold, more than 4 GiB, or the writer fails.
-pub fn write_glb(export: &Export<'_>, writer: impl Write) -> Result<(), WriteError> {
-    let data = std::io::Cursor::new(vec![]);
-    file_of(export, data)?.finish_glb(writer)
+pub fn write_glb(export: &Export<'_>, mut writer: impl Write) -> Result<(), WriteError> {
+    write(export, GltfOutput::from_memory(&mut writer))
 }
 
 /// Writes the two parts of a `.gltf` with its data in a file beside it, called `binary_name`.
@@ -52,17 +38,18 @@ pub fn write_glb(export: &Export<'_>, writer: impl Write) -> Result<(), WriteErr
 pub fn write_gltf(
     export: &Export<'_>,
     binary_name: &str,
-    json_writer: impl Write,
-    binary_writer: impl Write,
+    mut json_writer: impl Write,
+    mut binary_writer: impl Write,
 ) -> Result<(), WriteError> {
-    file_of(export, binary_writer)?.finish_gltf(binary_name, json_writer)
+    let output = GltfOutput::gltf(binary_name, &mut json_writer, &mut binary_writer);
+    write(export, output)
 }
 
-fn file_of<'a, W: Write>(export: &Export<'a>, data: W) -> Result<GltfFile<'a, W>, WriteError> {
+fn write(export: &Export<'_>, output: GltfOutput<'_>) -> Result<(), WriteError> {
     let attributes = export.photosurfaces.first().map(Photosurface::attributes);
     let attributes = attributes.unwrap_or_default();
     let mut file = GltfFile::new(
-        data,
+        output,
         export.scene,
         export.marker,
         attributes,
@@ -81,36 +68,35 @@ fn file_of<'a, W: Write>(export: &Export<'a>, data: W) -> Result<GltfFile<'a, W>
             }
         }
     }
-    Ok(file)
+    file.finish()
 }
 
-/// A glTF file in the making: photosurfaces go in one after the other, their data goes on to `W`, and none has to stay
-/// in memory.
-pub struct GltfFile<'a, W> {
-    pub(super) document: Document<W>,
-    pub(super) scene: &'a SceneFacts,
+/// A glTF file in the making: photosurfaces go in one after the other, and none has to stay in memory.
+pub struct GltfFile<'a> {
+    pub(super) document: Document<'a>,
+    pub(super) scene: SceneFacts,
     pub(super) tracks: super::animation::Tracks,
     materials: Materials,
     attributes: Attributes,
     playback: Option<Playback>,
 }
 
-impl<'a, W: Write> GltfFile<'a, W> {
+impl<'a> GltfFile<'a> {
     /// A file with nothing but the observer's marker; every mesh will have these attributes.
     ///
     /// # Errors
     ///
     /// The writer fails.
     pub fn new(
-        data: W,
-        scene: &'a SceneFacts,
+        output: GltfOutput<'a>,
+        scene: &SceneFacts,
         marker: Option<&Part>,
         attributes: Attributes,
         playback: Option<Playback>,
     ) -> Result<Self, WriteError> {
         let mut file = Self {
-            document: Document::new(data),
-            scene,
+            document: Document::new(output),
+            scene: scene.clone(),
             tracks: Default::default(),
             materials: Materials::default(),
             attributes,
@@ -159,57 +145,46 @@ impl<'a, W: Write> GltfFile<'a, W> {
             return Err(WriteError::Empty(name.to_owned()));
         }
         let positions: Vec<_> = steps.iter().map(|mesh| mesh.positions()).collect();
-        let Packed {
-            offset,
-            local,
-            differences,
-        } = pack(name, &positions)?;
+        let packing = Packing::new(name, &positions)?;
         let document = &mut self.document;
-        let mut attributes = vec![(Semantic::Positions, document.local(&local)?)];
+        let local = |_: usize, place: &DVec3| packing.local(*place);
+        let bounds = Some(packing.local_bounds());
+        let places = document.vectors(mesh.positions(), local, bounds, Use::Vertices)?;
+        let mut attributes = vec![(Semantic::Positions, places)];
         if let Some(normals) = mesh.normals() {
-            let normals: Vec<[f32; 3]> = normals
-                .iter()
-                .map(|normal| unit_or_up(*normal).as_vec3().to_array())
-                .collect();
-            let accessor = document.vectors(&normals, accessor::Type::Vec3)?;
+            let direction = |_: usize, normal: &DVec3| unit_or_up(*normal).as_vec3().to_array();
+            let accessor = document.vectors(normals, direction, None, Use::Vertices)?;
             attributes.push((Semantic::Normals, accessor));
         }
         if let Some(tangents) = mesh.tangents() {
-            let tangents: Vec<[f32; 4]> = tangents
-                .iter()
-                .map(|tangent| {
-                    unit_or_up(tangent.truncate())
-                        .extend(tangent.w)
-                        .as_vec4()
-                        .to_array()
-                })
-                .collect();
-            let accessor = document.vectors(&tangents, accessor::Type::Vec4)?;
+            let direction = |_: usize, tangent: &DVec4| {
+                let unit = unit_or_up(tangent.truncate());
+                unit.extend(tangent.w).as_vec4().to_array()
+            };
+            let accessor = document.vectors(tangents, direction, None, Use::Vertices)?;
             attributes.push((Semantic::Tangents, accessor));
         }
         for (set, coordinates) in (0..).zip(mesh.texture_coordinates()) {
             let accessor = document.shared(coordinates, |document| {
-                let values: Vec<[f32; 2]> = coordinates.iter().map(|c| c.to_array()).collect();
-                document.vectors(&values, accessor::Type::Vec2)
+                let values = |_: usize, place: &Vec2| place.to_array();
+                document.vectors(coordinates, values, None, Use::Vertices)
             })?;
             attributes.push((Semantic::TexCoords(set), accessor));
         }
         if let Some(colors) = mesh.shared_colors() {
             let accessor = document.shared(colors, |document| {
-                let bytes = colors.iter().flat_map(|color| color.to_array().map(to_u8));
-                document.colors(&bytes.collect::<Vec<u8>>())
+                document.colors(colors, |color| color.to_array().map(to_u8))
             })?;
             attributes.push((Semantic::Colors(0), accessor));
         }
         for scalar in scalars {
-            let values: Vec<[f32; 1]> = scalar.values.iter().map(|&v| [v as f32]).collect();
-            let accessor = document.vectors(&values, accessor::Type::Scalar)?;
+            let number = |vertex: usize, _: &DVec3| [scalar.at(vertex) as f32];
+            let accessor = document.vectors(mesh.positions(), number, None, Use::Vertices)?;
             let name = scalar.name.to_ascii_uppercase();
             attributes.push((Semantic::Extras(name), accessor));
         }
-        let targets = steps[1..].iter().zip(&differences);
-        let targets =
-            targets.map(|(step, difference)| morph_target(document, mesh, step, difference));
+        let targets = steps[1..].iter();
+        let targets = targets.map(|step| morph_target(document, mesh, step, &packing));
         let targets: Vec<_> = targets.collect::<Result<_, _>>()?;
         let triangles = mesh.shared_triangles();
         let indices = document.shared(triangles, |document| document.indices(triangles))?;
@@ -232,83 +207,33 @@ impl<'a, W: Write> GltfFile<'a, W> {
             mesh["weights"] = json!(vec![0.0; targets]);
             mesh["extras"] = json!({ "targetNames": names });
         }
-        let mesh = self.document.meshes.push(&mesh);
+        let mesh = self.document.mesh(&mesh)?;
         // `gltf::json` has no room for the offset in f64.
         let mut node = json!({ "name": name, "mesh": mesh });
-        if offset != DVec3::ZERO {
-            node["translation"] = json!(offset.to_array());
+        if packing.offset != DVec3::ZERO {
+            node["translation"] = json!(packing.offset.to_array());
         }
         if let Some(extras) = extras {
             node["extras"] = extras;
         }
-        Ok(self.document.nodes.push(&node))
+        self.document.node(&node)
     }
 
-    /// Writes a GLB of everything that was added; the data is read back from where it went.
+    /// Writes what is left to write of everything that was added, and makes sure that all of it has gone out.
     ///
     /// # Errors
     ///
-    /// More than 4 GiB, the data cannot be read, or the writer fails.
-    pub fn finish_glb(self, mut writer: impl Write) -> Result<(), WriteError>
-    where
-        W: Read + Seek,
-    {
-        let (mut json, mut data, bytes) = self.finish(None)?;
-        json.resize(json.len().next_multiple_of(4), b' ');
-        let padded = bytes.next_multiple_of(4);
-        let all = 12 + 8 + json.len() as u64 + 8 + padded;
-        let limit = u64::from(u32::MAX);
-        if all > limit {
-            return Err(WriteError::TooLarge {
-                format: "GLB",
-                bytes: all,
-                limit,
-            });
-        }
-        let [magic, json_kind, data_kind] = [*b"glTF", *b"JSON", *b"BIN\0"].map(u32::from_le_bytes);
-        for word in [magic, 2, all as u32, json.len() as u32, json_kind] {
-            writer.write_all(&word.to_le_bytes())?;
-        }
-        writer.write_all(&json)?;
-        drop(json);
-        for word in [padded as u32, data_kind] {
-            writer.write_all(&word.to_le_bytes())?;
-        }
-        data.rewind()?;
-        std::io::copy(&mut data, &mut writer)?;
-        writer.write_all(&[0; 4][..(padded - bytes) as usize])?;
-        Ok(())
-    }
-
-    /// Writes a `.gltf` of everything that was added, which refers to the data by the name of its file, and makes sure
-    /// that all of that has gone out.
-    ///
-    /// # Errors
-    ///
-    /// A writer fails.
-    pub fn finish_gltf(
-        self,
-        binary_name: &str,
-        mut json_writer: impl Write,
-    ) -> Result<(), WriteError> {
-        let (json, mut data, _) = self.finish(Some(binary_name))?;
-        data.flush()?;
-        json_writer.write_all(&json)?;
-        json_writer.write_all(b"\n")?;
-        Ok(())
-    }
-
-    /// The JSON, the stream of data and how much of that there is.
-    fn finish(mut self, binary_name: Option<&str>) -> Result<(Vec<u8>, W, u64), WriteError> {
+    /// More than 4 GiB in a GLB, or the file cannot be written.
+    pub fn finish(mut self) -> Result<(), WriteError> {
         let mut scene_extras = json!(self.scene);
         if let Some(playback) = self.playback {
             let frames_per_second = playback.frames_per_second();
             scene_extras["frames_per_second"] = frames_per_second.into();
-            self.animate(frames_per_second);
+            self.animate(frames_per_second)?;
         }
         let images = self.materials.images().to_vec();
         let views = images.iter().map(|image| {
-            let view = self.document.view(image.bytes(), None)?;
+            let view = self.document.image(image.bytes())?;
             Ok(view.value())
         });
         let views: Vec<usize> = views.collect::<Result<_, WriteError>>()?;
@@ -325,34 +250,39 @@ impl<'a, W: Write> GltfFile<'a, W> {
             "scenes": [scene],
         });
         self.materials.write_into(&mut others, &views);
-        let uri = binary_name.map(|name| utf8_percent_encode(name, IN_REFERENCE).to_string());
-        let bytes = self.document.bytes();
-        let (json, data) = self.document.finish(&others, uri);
-        Ok((json, data, bytes))
+        self.document.finish(&others)
     }
 }
 
 /// What is to be added to the first step's geometry to have that of another.
-fn morph_target<W: Write>(
-    document: &mut Document<W>,
+fn morph_target(
+    document: &mut Document<'_>,
     first: &Mesh,
     step: &Mesh,
-    difference: &Local,
+    packing: &Packing,
 ) -> Result<json::mesh::MorphTarget, WriteError> {
-    let mut differences = |from: Vec<DVec3>, to: Vec<DVec3>| {
-        let pairs = from.iter().zip(&to);
-        let differences = pairs.map(|(&from, &to)| unit_or_up(to) - unit_or_up(from));
-        let differences: Vec<_> = differences.map(|d| d.as_vec3().to_array()).collect();
-        document.vectors(&differences, accessor::Type::Vec3)
+    let turned = |from: DVec3, to: DVec3| {
+        let difference = unit_or_up(to) - unit_or_up(from);
+        difference.as_vec3().to_array()
     };
-    let directions = |tangents: &[DVec4]| tangents.iter().map(|t| t.truncate()).collect();
     let normals = first.normals().zip(step.normals());
-    let normals = normals.map(|(from, to)| differences(from.to_vec(), to.to_vec()));
+    let normals = normals.map(|(from, to)| {
+        let difference = |vertex: usize, to: &DVec3| turned(from[vertex], *to);
+        document.vectors(to, difference, None, Use::Vertices)
+    });
+    let normals = normals.transpose()?;
     let tangents = first.tangents().zip(step.tangents());
-    let tangents = tangents.map(|(from, to)| differences(directions(from), directions(to)));
-    let (normals, tangents) = (normals.transpose()?, tangents.transpose()?);
+    let tangents = tangents.map(|(from, to)| {
+        let difference = |vertex: usize, to: &DVec4| turned(from[vertex].truncate(), to.truncate());
+        document.vectors(to, difference, None, Use::Vertices)
+    });
+    let tangents = tangents.transpose()?;
+    let (from, to) = (first.positions(), step.positions());
+    let difference = |vertex: usize, to: &DVec3| packing.difference(from[vertex], *to);
+    let bounds = Bounds::of_all(to.len(), |vertex| difference(vertex, &to[vertex]));
+    let positions = document.vectors(to, difference, Some(bounds), Use::Vertices)?;
     Ok(json::mesh::MorphTarget {
-        positions: Some(document.local(difference)?),
+        positions: Some(positions),
         normals,
         tangents,
     })

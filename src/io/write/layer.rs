@@ -1,10 +1,10 @@
 //! What goes into a file, mesh by mesh: the observer's marker and the photosurfaces alike.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::pack::first_beyond_f32;
 use super::{Export, WriteError};
 use crate::mesh::{Material, Mesh, Part};
 use crate::photosurface::{Facts, Photosurface, VertexData};
@@ -26,7 +26,31 @@ pub(super) struct Layer<'a> {
 pub(super) struct Scalar<'a> {
     /// In lower case; glTF writes it in upper case behind an underscore.
     pub(super) name: &'static str,
-    pub(super) values: Cow<'a, [f64]>,
+    values: Values<'a>,
+}
+
+/// Where the numbers come from.
+#[derive(Clone, Copy, Debug)]
+enum Values<'a> {
+    Known(&'a [f64]),
+    /// Those of what is at rest, each the same.
+    One,
+    /// When what is at rest is seen.
+    AtRest(&'a [DVec3]),
+    /// One coordinate.
+    Axis(&'a [DVec3], usize),
+}
+
+impl Scalar<'_> {
+    /// The number at a vertex.
+    pub(super) fn at(&self, vertex: usize) -> f64 {
+        match self.values {
+            Values::Known(values) => values[vertex],
+            Values::One => 1.0,
+            Values::AtRest(positions) => -positions[vertex].length(),
+            Values::Axis(positions, axis) => positions[vertex][axis],
+        }
+    }
 }
 
 /// The marker, if there is one, and all photosurfaces.
@@ -71,34 +95,36 @@ impl<'a> Layer<'a> {
     pub(super) fn scalars(&self, asked_for: Attributes) -> Result<Vec<Scalar<'a>>, WriteError> {
         let positions = self.mesh.positions();
         let mut scalars = vec![];
-        let mut add = |name, words, values: Cow<'a, [f64]>| {
-            let limit = f64::from(f32::MAX);
-            match values.iter().position(|value| !(value.abs() <= limit)) {
+        let mut add = |name, words, values| {
+            let scalar = Scalar { name, values };
+            match first_beyond_f32(positions.len(), |vertex| scalar.at(vertex)) {
                 Some(vertex) => Err(WriteError::Range {
                     name: self.name.to_owned(),
                     quantity: words,
                     vertex,
-                    value: values[vertex],
-                    limit,
+                    value: scalar.at(vertex),
+                    limit: f64::from(f32::MAX),
                 }),
                 None => {
-                    scalars.push(Scalar { name, values });
+                    scalars.push(scalar);
                     Ok(())
                 }
             }
         };
         let own = |of: fn(&VertexData) -> Option<&Vec<f64>>| {
-            Some(Cow::Borrowed(of(self.vertex_data?)?.as_slice()))
+            Some(Values::Known(of(self.vertex_data?)?.as_slice()))
         };
         if asked_for.doppler {
             let factors = own(|data| data.doppler_factors.as_ref());
-            let factors = factors.unwrap_or_else(|| vec![1.0; positions.len()].into());
-            add("doppler", "the Doppler factor", factors)?;
+            add(
+                "doppler",
+                "the Doppler factor",
+                factors.unwrap_or(Values::One),
+            )?;
         }
         if asked_for.emission_time {
             let times = own(|data| data.emission_times.as_ref());
-            let now = || positions.iter().map(|position| -position.length());
-            let times = times.unwrap_or_else(|| now().collect());
+            let times = times.unwrap_or(Values::AtRest(positions));
             add("emission_time", "the emission time", times)?;
         }
         if asked_for.rest_position {
@@ -106,10 +132,9 @@ impl<'a> Layer<'a> {
                 .vertex_data
                 .and_then(|data| data.rest_positions.as_ref());
             let places = places.map_or(positions, Vec::as_slice);
-            let axis = |of: fn(&DVec3) -> f64| places.iter().map(of).collect();
-            add("rest_x", "the place at rest", axis(|place| place.x))?;
-            add("rest_y", "the place at rest", axis(|place| place.y))?;
-            add("rest_z", "the place at rest", axis(|place| place.z))?;
+            for (axis, name) in ["rest_x", "rest_y", "rest_z"].into_iter().enumerate() {
+                add(name, "the place at rest", Values::Axis(places, axis))?;
+            }
         }
         Ok(scalars)
     }

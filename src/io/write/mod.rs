@@ -1,21 +1,26 @@
 //! Photosurfaces as files: glTF, GLB, PLY, and the JSON report.
 
 mod animation;
+mod convert;
 mod document;
 mod error;
 mod file;
+mod glb;
 mod gltf;
 mod layer;
 mod materials;
+mod output;
 mod pack;
 mod ply;
 mod range;
 mod report;
 mod size;
+mod text;
 
 pub use error::WriteError;
-pub use file::{abandon_writes, destination, write_whole};
+pub use file::{Target, abandon_writes, destination, write_whole, write_whole_target};
 pub use gltf::{GltfFile, write_glb, write_gltf};
+pub use output::GltfOutput;
 pub use ply::write_ply;
 pub use report::{Report, StageTime};
 pub use size::Format;

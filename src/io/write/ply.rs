@@ -125,7 +125,7 @@ fn write_vertices(
             writer.write_all(&(value as f32).to_le_bytes())?;
         }
         for scalar in scalars {
-            writer.write_all(&(scalar.values[vertex] as f32).to_le_bytes())?;
+            writer.write_all(&(scalar.at(vertex) as f32).to_le_bytes())?;
         }
         if with_colors {
             let color = mesh.colors().map_or(Vec4::ONE, |colors| colors[vertex]);

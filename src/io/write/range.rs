@@ -1,9 +1,10 @@
 //! Whether the numbers of a file can hold what is seen, before any of the work.
 
 use super::layer::Layer;
-use super::pack::pack;
+use super::pack::{Packing, bounds};
 use super::ply::check_positions;
 use super::{Format, WriteError};
+use crate::mesh::Part;
 use crate::photosurface::{Stage, Wanted};
 
 impl Format {
@@ -19,14 +20,25 @@ impl Format {
             attributes: self.attributes(stage.scene()),
             ..Wanted::default()
         };
+        // The boxes at rest, the same for all steps.
+        let of_part = |(_, part): &(String, Part)| {
+            let (low, high, _) = bounds(part.mesh().positions()).unwrap_or_default();
+            (low, high)
+        };
+        let objects = stage.objects();
+        let boxes: Vec<Vec<_>> = objects
+            .map(|(_, parts)| parts.iter().map(of_part).collect())
+            .collect();
         let steps = 0..stage.scene().steps().len();
-        for step in steps.filter(|&step| !stage.is_within_f32(step)) {
+        for step in steps.filter(|&step| !stage.is_within_f32(step, &boxes)) {
             for photosurface in stage.photosurfaces(step, wanted) {
                 let (name, mesh) = (&photosurface.facts.name, &photosurface.mesh);
                 match self {
-                    Self::Glb | Self::Gltf => pack(name, &[mesh.positions()])
-                        .map(drop)
-                        .map_err(|error| by_cause(error, photosurface.facts.relative_rapidity))?,
+                    Self::Glb | Self::Gltf => {
+                        Packing::new(name, &[mesh.positions()]).map_err(|error| {
+                            by_cause(error, photosurface.facts.relative_rapidity)
+                        })?;
+                    }
                     Self::Ply => check_positions(name, mesh)?,
                 }
                 Layer::from(&photosurface).scalars(wanted.attributes)?;

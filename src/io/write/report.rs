@@ -20,7 +20,8 @@ pub struct Report {
 pub struct StageTime {
     /// Which stage.
     pub name: &'static str,
-    /// Wall clock.
+    /// Wall clock. Where stages overlap, that of the one which the others waited for: together they are what the
+    /// whole took.
     pub seconds: f64,
 }
 

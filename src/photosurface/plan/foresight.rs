@@ -52,8 +52,7 @@ impl Plan<'_> {
         let before = facets.iter().map(|(weight, _)| weight).sum();
         if !wanted.subdivide || velocity.rapidity() == 0.0 {
             let prove = |((_, part), seen): (&(String, Part), &Seen)| {
-                let mesh = part.mesh();
-                self.certificate(&draft.limits, mesh, mesh, seen, self.largest_gap(mesh))
+                self.certificate_of_unrefined(&draft.limits, part.mesh(), seen)
             };
             return Foresight {
                 triangles: before,

@@ -6,7 +6,7 @@ use super::{Limits, Plan, Surface, bounds, seen_parts};
 use crate::mesh::Part;
 use crate::photosurface::Wanted;
 use crate::photosurface::seen::Seen;
-use crate::tessellate::refine;
+use crate::tessellate::{Counts, refine, survey};
 
 impl<'a> Plan<'a> {
     /// Carries out the plans of one object for all steps with one mesh at rest, which is refined for one step after
@@ -37,7 +37,8 @@ impl<'a> Plan<'a> {
                 continue;
             }
             for (_, part) in &mut parts {
-                let refined = refine(part.mesh(), plan.view.observer_rest(), &limits.allowance);
+                let observer = plan.view.observer_rest();
+                let refined = refine(part.mesh(), observer, &limits.allowance, &limits.whole);
                 *part = part.with_mesh(refined.mesh);
             }
         }
@@ -47,10 +48,18 @@ impl<'a> Plan<'a> {
             let steps = plans.iter().zip(&mut seen).map(|(plan, (seen, limits))| {
                 let (mesh, seen) = (part.mesh(), seen[index].clone());
                 let gap = plan.largest_gap(mesh);
+                let before = before.mesh();
+                let observer = plan.view.observer_rest();
+                let minimum = survey(before, observer, f64::INFINITY, &limits.whole);
+                let counts = Counts {
+                    triangles_in: before.triangles().len(),
+                    triangles_out: mesh.triangles().len(),
+                    minimum_triangles: minimum.minimum_triangles,
+                };
                 Surface {
                     name: name.clone(),
                     part: Cow::Owned(part.clone()),
-                    certificate: plan.certificate(limits, before.mesh(), mesh, &seen, gap),
+                    certificate: plan.certificate(limits, mesh, &seen, gap, counts),
                     seen,
                 }
             });

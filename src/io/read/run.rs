@@ -1,0 +1,126 @@
+//! Elements at even distances in a run of bytes, taken up by several threads a piece at a time.
+
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+
+use super::ReadError;
+use super::bytes::Bytes;
+
+/// Elements that a thread takes at a time: enough to outweigh a read, and still at hand when they are decoded.
+const JOB: usize = 1024;
+
+/// Where the elements are; all of them are there.
+pub(super) struct Run<'a> {
+    pub(super) bytes: Bytes<'a>,
+    /// The first byte of the first element.
+    pub(super) start: usize,
+    /// Bytes from one element to the next.
+    pub(super) stride: usize,
+    /// Bytes of an element.
+    pub(super) size: usize,
+    pub(super) count: usize,
+}
+
+impl Run<'_> {
+    /// What `make` makes of the bytes of each element.
+    pub(super) fn map<T>(&self, make: impl Fn(&[u8]) -> T + Sync) -> Result<Vec<T>, ReadError>
+    where
+        T: Copy + Default + Send,
+    {
+        if self.count == 0 {
+            // Then the distances may be anything.
+            return Ok(vec![]);
+        }
+        if self.count <= JOB {
+            let mut buffer = vec![];
+            let elements = self.elements(0, &mut buffer)?;
+            return Ok(elements.map(make).collect());
+        }
+        let failure = OnceLock::new();
+        let jobs = (0..self.count.div_ceil(JOB)).into_par_iter();
+        // Arrays have a known place in the result, so that nothing has to be put together afterwards.
+        let pieces = jobs.map_init(Vec::new, |buffer, job| {
+            let mut piece = [T::default(); JOB];
+            match self.elements(job * JOB, buffer) {
+                Ok(elements) => {
+                    for (value, element) in piece.iter_mut().zip(elements) {
+                        *value = make(element);
+                    }
+                }
+                // Any of them will do.
+                Err(error) => drop(failure.set(error)),
+            }
+            piece
+        });
+        let mut values = pieces.collect::<Vec<_>>().into_flattened();
+        values.truncate(self.count);
+        failure.into_inner().map_or(Ok(values), Err)
+    }
+
+    /// The bytes of the elements of a job that starts with the element `first`.
+    fn elements<'b>(
+        &'b self,
+        first: usize,
+        buffer: &'b mut Vec<u8>,
+    ) -> Result<impl Iterator<Item = &'b [u8]>, ReadError> {
+        let count = JOB.min(self.count - first);
+        let start = self.start + first * self.stride;
+        let end = start + (count - 1) * self.stride + self.size;
+        let bytes = self.bytes.part(start..end, buffer)?;
+        let elements = bytes.chunks(self.stride);
+        Ok(elements.map(|element| &element[..self.size]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elements_are_found_at_any_distance_and_in_any_number() {
+        let all: Vec<u8> = (0..20_000u32).flat_map(u32::to_le_bytes).collect();
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), &all).unwrap();
+        for (start, stride, size) in [(0, 4, 4), (8, 12, 4), (4, 12, 8), (4, 4, 1)] {
+            for count in [0, 1, JOB - 1, JOB, JOB + 1, 3 * JOB, 6000] {
+                for bytes in [
+                    Bytes::Held(all.as_slice().into()),
+                    Bytes::open(file.path(), u64::MAX).unwrap(),
+                ] {
+                    let run = Run {
+                        bytes,
+                        start,
+                        stride,
+                        size,
+                        count,
+                    };
+                    let mut expected = vec![];
+                    for element in 0..count {
+                        let first = start + element * stride;
+                        expected.push((all[first], all[first + size - 1]));
+                    }
+                    let found = run.map(|bytes| (bytes[0], bytes[size - 1])).unwrap();
+                    assert!(found == expected, "{start} {stride} {size} {count}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_file_cut_short_while_it_is_read_is_an_error() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), vec![1; 100_000]).unwrap();
+        let bytes = Bytes::open(file.path(), u64::MAX).unwrap();
+        file.as_file().set_len(60_000).unwrap();
+        let run = Run {
+            bytes,
+            start: 0,
+            stride: 10,
+            size: 10,
+            count: 10_000,
+        };
+        let error = run.map(|bytes| bytes[0]).unwrap_err();
+        assert!(matches!(error, ReadError::File { path, .. } if path == file.path()));
+    }
+}
