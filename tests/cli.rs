@@ -74,7 +74,6 @@ fn every_built_in_scene_exports() {
 fn the_readmes_commands_work() {
     let workplace = Workplace::new();
     workplace.write("bunny.obj", SQUARE);
-    workplace.write("scene.json", BALL);
     let readme = include_str!("../README.md");
     let blocks = readme
         .split("```sh\n")
@@ -85,116 +84,11 @@ fn the_readmes_commands_work() {
         .filter(|line| line.starts_with("photosurface "));
     let mut count = 0;
     for line in lines {
-        workplace.run_shell(line).success();
+        let run = workplace.run_shell(line).success();
+        assert!(!run.stderr.contains("written by photosurface"), "{run}");
         count += 1;
     }
     assert!(count >= 5, "only {count} commands found in the README");
-}
-
-#[test]
-fn every_flag_reaches_its_parameter() {
-    let workplace = with_ball();
-    let cases: &[(&str, &str, &[f64])] = &[
-        ("", "observer_rapidity", &[std::f64::consts::LN_2]),
-        ("--beta 0.8", "observer_beta", &[0.8]),
-        (
-            "--one-minus-beta 1e-30",
-            "observer_rapidity",
-            &[34.885_349_985_190_66],
-        ),
-        ("--gamma 5", "observer_gamma", &[5.0]),
-        ("--rapidity 40", "observer_rapidity", &[40.0]),
-        ("--beta 0", "observer_gamma", &[1.0]),
-        (
-            "--direction=-3,0,4",
-            "observer_direction",
-            &[-0.6, 0.0, 0.8],
-        ),
-        (
-            "--direction 0,0,-2",
-            "observer_rapidity",
-            &[std::f64::consts::LN_2],
-        ),
-        (
-            "--observer 1,-2,3.5",
-            "observer_position",
-            &[1.0, -2.0, 3.5],
-        ),
-        ("--observer -1,2,3", "observer_position", &[-1.0, 2.0, 3.0]),
-        ("--time -4", "observer_time", &[-4.0]),
-        ("--steps 1,2.5", "steps", &[1.0, 2.5]),
-        ("--steps -1", "steps", &[-1.0]),
-        ("--steps=-6..6/3", "steps", &[-6.0, 0.0, 6.0]),
-    ];
-    for (flags, key, expected) in cases {
-        let run = workplace
-            .run(&format!(
-                "export ball.json -o out.glb --report report.json {flags}"
-            ))
-            .success();
-        let scene = &workplace.read_json("report.json")["scene"];
-        let found: Vec<f64> = match &scene[key] {
-            Value::Array(numbers) => numbers.iter().filter_map(Value::as_f64).collect(),
-            number => number.as_f64().into_iter().collect(),
-        };
-        assert_eq!(found.len(), expected.len(), "{key}: {found:?}\n{run}");
-        for (found, expected) in found.iter().zip(*expected) {
-            assert!(
-                (found - expected).abs() <= 4e-15 * expected.abs(),
-                "{key}: {found} {expected}\n{run}"
-            );
-        }
-    }
-    workplace
-        .run("export ball.json -o out.glb --marker 0.25")
-        .success();
-    assert_eq!(node_names(&workplace.read("out.glb")), ["observer", "ball"]);
-    workplace
-        .run("export --marker 0 --steps 0 -o out.glb")
-        .success();
-    assert_eq!(node_names(&workplace.read("out.glb")), ["sphere"]);
-}
-
-#[test]
-fn impossible_flags_are_refused_by_name() {
-    let workplace = with_ball();
-    workplace
-        .run("export --beta 1")
-        .error(&["--beta", "beta is 1, expected 0 <= beta < 1"]);
-    workplace.run("export --beta -0.5").error(&["beta is -0.5"]);
-    workplace
-        .run("export --gamma 0.5")
-        .error(&["--gamma", "gamma is 0.5"]);
-    workplace
-        .run("export --rapidity 400")
-        .error(&["--rapidity", "at most 350"]);
-    workplace
-        .run("export --one-minus-beta 2")
-        .error(&["--one-minus-beta", "one_minus_beta is 2"]);
-    workplace
-        .run("export --beta 0.5 --gamma 2")
-        .error(&["cannot be used with"]);
-    workplace
-        .run("export --direction 0,0,0")
-        .error(&["--direction", "not zero"]);
-    workplace
-        .run("export --direction 1,2")
-        .error(&["--direction", "expected three"]);
-    workplace
-        .run("export --steps 1..2")
-        .error(&["--steps", "FROM..TO/COUNT"]);
-    workplace
-        .run("export --time nan")
-        .error(&["--time", "finite"]);
-    workplace
-        .run("export --marker -1")
-        .error(&["--marker", "-1"]);
-    workplace
-        .run("export --example cube ball.json")
-        .error(&["cannot be used with"]);
-    workplace.run("export --nonsense").error(&["--nonsense"]);
-    workplace.run("").error(&["Usage"]);
-    assert_eq!(workplace.files(), ["ball.json", "square.obj"]);
 }
 
 #[test]
@@ -332,6 +226,70 @@ fn missing_and_unknown_files_are_told_by_name() {
     workplace.write("empty.glb", "");
     workplace.run("export empty.glb").error(&["empty.glb"]);
     assert_eq!(workplace.files(), ["ball.json", "empty.glb", "square.obj"]);
+}
+
+/// It was replaced by a file beside it that took its name, which asks nobody.
+#[test]
+fn what_is_read_only_is_not_replaced() {
+    let workplace = with_ball();
+    for name in ["out.glb", "report.json", "picture.png"] {
+        workplace.write(name, "mine");
+        let mut permissions = std::fs::metadata(workplace.path(name))
+            .unwrap()
+            .permissions();
+        permissions.set_readonly(true);
+        std::fs::set_permissions(workplace.path(name), permissions).unwrap();
+    }
+    for (line, name) in [
+        ("export ball.json -o out.glb", "out.glb"),
+        (
+            "export ball.json -o new.glb --report report.json",
+            "report.json",
+        ),
+        ("render ball.json --size 16x9 -o picture.png", "picture.png"),
+    ] {
+        workplace.run(line).error(&[name, "denied"]);
+        assert_eq!(workplace.read(name), b"mine");
+    }
+    assert!(!workplace.files().contains(&"new.glb".to_owned()));
+}
+
+/// A photosurface of a photosurface is hardly ever meant.
+#[test]
+fn what_this_program_wrote_is_noted_by_every_command() {
+    let workplace = with_ball();
+    workplace
+        .run("export square.obj --beta 0.5 -o seen.glb")
+        .success();
+    workplace.write(
+        "scene.json",
+        r#"{ "objects": [ { "name": "a", "file": "seen.glb" } ] }"#,
+    );
+    for line in [
+        "export seen.glb -o out.glb",
+        "check seen.glb",
+        "render seen.glb --size 16x9 -o out.png",
+        "cost seen.glb --only meshes --tolerances 1e-1 --samples 9 --repeats 1",
+        "export scene.json -o out.glb",
+    ] {
+        let run = workplace.run(line).success();
+        let notes = run
+            .stderr
+            .matches("seen.glb: written by photosurface ")
+            .count();
+        assert_eq!(notes, 1, "{run}");
+    }
+    let run = workplace.run("export square.obj -o out.glb").success();
+    assert!(!run.stderr.contains("note"), "{run}");
+}
+
+#[test]
+fn the_marker_is_told_beside_the_triangles() {
+    let workplace = with_ball();
+    let run = workplace
+        .run("export square.obj --marker 0.1 -o out.glb")
+        .success();
+    assert!(run.stderr.contains(" triangles and the marker, "), "{run}");
 }
 
 #[cfg(unix)]
@@ -553,41 +511,6 @@ fn messages_go_to_stderr_as_loud_as_asked() {
         "smaller rapidity",
     ]);
     assert_eq!(workplace.files(), ["ball.json", "out.glb", "square.obj"]);
-}
-
-#[test]
-fn check_says_what_an_export_would_make() {
-    let workplace = with_ball();
-    let run = workplace.run("check ball.json --steps 0,1,2").success();
-    let (text, triangles) = (run.stdout_text(), 20 * 2 * 2);
-    assert!(text.contains(&format!(" {triangles} ")), "{run}");
-    assert!(text.contains("3 steps: 3 photosurfaces"), "{run}");
-    assert!(
-        text.contains(&format!(" {} triangles", 3 * triangles)),
-        "{run}"
-    );
-    assert_eq!(workplace.files(), ["ball.json", "square.obj"]);
-}
-
-#[test]
-fn counts_and_sizes_are_told_as_people_say_them() {
-    let workplace = Workplace::new();
-    workplace.write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    let run = workplace.run("export one.obj -o one.gltf").success();
-    let bytes = workplace.read("one.gltf").len() + workplace.read("one.bin").len();
-    let summary = format!(
-        "one.gltf: 1 photosurface, 1 triangle, {:.1} kB\n",
-        bytes as f64 / 1e3
-    );
-    assert_eq!(run.stderr, summary, "{run}");
-    let run = workplace.run("check one.obj -q").success();
-    assert!(
-        run.stdout_text()
-            .ends_with("1 step: 1 photosurface, about 1 triangle\n"),
-        "{run}"
-    );
-    let run = workplace.run("check one.obj -v").success();
-    assert!(run.stderr.contains("one: 3 vertices, 1 triangle"), "{run}");
 }
 
 #[test]

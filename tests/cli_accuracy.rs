@@ -141,7 +141,7 @@ fn no_tolerance_is_too_fine_to_foretell() {
             let run = workplace.run(&format!(
                 "check --example {example} --tolerance {tolerance}"
             ));
-            let run = run.success();
+            assert_eq!(run.status, 1, "{run}");
             assert!(
                 run.stderr.contains("more than --max-triangles 20,000,000"),
                 "{run}"
@@ -184,9 +184,8 @@ fn a_hopeless_object_is_foretold_and_leaves_the_budget_to_the_others() {
     let workplace = Workplace::new();
     workplace.write("touched.json", TOUCHED);
     for flags in ["", "--max-triangles 30000"] {
-        let check = workplace
-            .run(&format!("check touched.json {flags}"))
-            .success();
+        let check = workplace.run(&format!("check touched.json {flags}"));
+        assert_eq!(check.status, 1, "{check}");
         let (objects, _) = foretold(check.stdout_text());
         let expected = [("floor", false), ("ball", true), ("box", true)];
         assert_eq!(
@@ -208,7 +207,7 @@ fn a_hopeless_object_is_foretold_and_leaves_the_budget_to_the_others() {
         }
     }
     // As they are, only what is small enough already is within the tolerance.
-    let run = workplace.run("check touched.json --no-subdivide").success();
+    let run = workplace.run("check touched.json --no-subdivide");
     let kept: Vec<_> = foretold(run.stdout_text())
         .0
         .into_iter()
@@ -313,12 +312,13 @@ fn whether_an_angle_can_be_kept_is_foretold() {
         (r#"{ "rod": { "length": 4, "radius": 0.05 } }"#, "", true),
     ] {
         workplace.write("scene.json", scene(shape, more));
-        let check = workplace.run("check scene.json").success();
+        let check = workplace.run("check scene.json");
         let (objects, _) = foretold(check.stdout_text());
         let run = workplace.run("export scene.json -o out.glb");
+        let status = i32::from(!kept);
         assert_eq!(
-            (objects[0].1, run.status),
-            (kept, i32::from(!kept)),
+            (objects[0].1, check.status, run.status),
+            (kept, status, status),
             "{shape}{more}\n{run}"
         );
     }

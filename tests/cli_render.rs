@@ -121,8 +121,16 @@ fn pictures_that_make_no_sense_are_refused_before_any_work() {
             vec!["--sheet", "16384"],
         ),
         ("--size 0x9", vec!["0 x 9", "16384"]),
-        ("--fov 180", vec!["180", "less than 180"]),
-        ("--look 0,0,0", vec!["not zero"]),
+        ("--fov 180", vec!["--fov", "180", "less than 180"]),
+        ("--look 0,0,0", vec!["--look", "not zero"]),
+        (
+            "--target 0,0,0",
+            vec!["--target is the place of the camera"],
+        ),
+        (
+            "--view outside --from 1,2,3 --target 1,2,3",
+            vec!["--target is the place of the camera"],
+        ),
         ("--background red", vec!["#rrggbb"]),
         ("--lod 1e-2,1e-3", vec!["--lod"]),
         ("-o ball.jpg", vec![".png"]),
@@ -170,6 +178,65 @@ fn a_sheet_shows_every_step_twice() {
         let found = [above != plain_above, below != plain_below];
         assert_eq!(found, expected, "{changed}");
     }
+}
+
+/// How many pixels are not of the background.
+fn painted(png: &[u8]) -> usize {
+    let pixels = pixels(png);
+    let background = [0x14, 0x17, 0x1c];
+    pixels
+        .chunks(3)
+        .filter(|&pixel| pixel != background)
+        .count()
+}
+
+/// What comes at a fast observer is seen small: a mesh of which nothing else is said fills the picture all the same.
+#[test]
+fn a_bare_mesh_fills_the_picture() {
+    let workplace = Workplace::new();
+    workplace.write(
+        "square.obj",
+        "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n",
+    );
+    let picture = |flags: &str| {
+        let line = format!("render square.obj --size 64x48 {flags} -o -");
+        painted(&workplace.run(&line).success().stdout)
+    };
+    for speed in ["--beta 0", "--beta 0.9", "--beta 0.9999", "--gamma 1e6"] {
+        // The picture is as high as the circle around the square: more than a third of it, less than all.
+        let part = picture(speed) as f64 / (64.0 * 48.0);
+        assert!((0.3..0.6).contains(&part), "{speed}: {part}");
+        for flags in ["--fov 60", "--look 0,0,-1", "--target 0,0,-1"] {
+            let as_said = picture(&format!("{speed} {flags}")) as f64 / (64.0 * 48.0);
+            assert!(as_said < part, "{speed} {flags}: {as_said}");
+        }
+    }
+}
+
+#[test]
+fn an_empty_picture_is_noted() {
+    let workplace = with_ball();
+    let line = "render ball.json --size 16x9 -o out.png";
+    let run = workplace.run(line).success();
+    assert!(!run.stderr.contains("note"), "{run}");
+    let run = workplace.run(&format!("{line} --look 0,-1,0.1")).success();
+    assert!(
+        run.stderr.contains("nothing is to be seen in the picture"),
+        "{run}"
+    );
+    let (_, advice) = run.stderr.split_once("--look=").expect("advice");
+    let look = advice.split(' ').next().expect("a direction");
+    let run = workplace
+        .run(&format!("{line} --look={look} --fov 90"))
+        .success();
+    assert!(!run.stderr.contains("note"), "{run}");
+    let run = workplace
+        .run(&format!("{line} --look 0,-1,0.1 --steps 0,1,2"))
+        .success();
+    assert!(
+        run.stderr.contains("nothing is to be seen at 3 of 3 steps"),
+        "{run}"
+    );
 }
 
 fn pixels(png: &[u8]) -> Vec<u8> {

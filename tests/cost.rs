@@ -280,12 +280,12 @@ fn plots_are_pictures_of_the_size_asked_for() {
     let workplace = Workplace::new();
     let flags = "cost --example cube --tolerances 1e-1,1e-2 --samples 100 --size 32x18 --pixel-samples 1,2 --repeats 1";
     workplace
-        .run(&format!("{flags} --plot a.png --plot-size 500x300"))
+        .run(&format!("{flags} --plot a.png --plot-size 640x480"))
         .success();
     let png = workplace.read("a.png");
     assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
     let side = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
-    assert_eq!((side(16), side(20)), (500, 300));
+    assert_eq!((side(16), side(20)), (640, 480));
     workplace.run(&format!("{flags} --plot a.SVG")).success();
     let svg = String::from_utf8(workplace.read("a.SVG")).unwrap();
     assert!(
@@ -306,6 +306,63 @@ fn plots_are_pictures_of_the_size_asked_for() {
     }
 }
 
+/// At small sizes the legend covered curves and words ran off the edge; now it has a strip of its own, and sizes at which
+/// that is too little are refused.
+#[test]
+fn words_cover_neither_curves_nor_each_other_at_the_smallest_size() {
+    let workplace = Workplace::new();
+    let title = "A cube of which there is much more to be said than a title of one line has room for in this plot";
+    let scene = workplace.run("example cube").success();
+    let scene = scene.stdout_text().replace("A cube flies by", title);
+    workplace.write("scene.json", scene);
+    let flags = "cost scene.json --tolerances 1e-1,1e-2,1e-3 --samples 100 --size 32x18 --pixel-samples 1,2 --repeats 1";
+    workplace
+        .run(&format!("{flags} --plot a.svg --plot-size 640x480"))
+        .success();
+    let svg = String::from_utf8(workplace.read("a.svg")).unwrap();
+    let attribute = |element: &str, name: &str| -> Option<String> {
+        let (_, rest) = element.split_once(&format!(" {name}=\""))?;
+        Some(rest.split('"').next()?.to_owned())
+    };
+    let number =
+        |element: &str, name: &str| -> f64 { attribute(element, name).unwrap().parse().unwrap() };
+    // Left, top, right and bottom of each text; letters of DejaVu Sans are half as wide as high.
+    let texts = svg.split("<text").skip(1).map(|element| {
+        let (tag, words) = element.split_once('>').unwrap();
+        let words = words.split('<').next().unwrap().trim();
+        let letters = number(tag, "font-size");
+        let (x, y) = (number(tag, "x"), number(tag, "y"));
+        let width = 0.5 * letters * words.chars().count() as f64;
+        let before = match attribute(tag, "text-anchor").unwrap().as_str() {
+            "start" => 0.0,
+            "middle" => 0.5 * width,
+            _ => width,
+        };
+        let half = 0.4 * letters;
+        let bounds = match attribute(tag, "transform") {
+            // Upwards.
+            Some(_) => [x, y - before, x + half, y + before],
+            None => [x - before, y - half, x - before + width, y + half],
+        };
+        (words.to_owned(), bounds)
+    });
+    let texts: Vec<(String, [f64; 4])> = texts.collect();
+    assert!(texts.len() > 30, "{texts:?}");
+    for (index, (words, [left, top, right, bottom])) in texts.iter().enumerate() {
+        let is_within = *left >= 0.0 && *top >= 0.0 && *right <= 640.0 && *bottom <= 480.0;
+        assert!(is_within, "{words}: {left} {top} {right} {bottom}");
+        for (other, [l, t, r, b]) in &texts[..index] {
+            let apart = left > r || right < l || top > b || bottom < t;
+            assert!(apart, "\"{words}\" is on \"{other}\"");
+        }
+        for circle in svg.split("<circle").skip(1) {
+            let (x, y) = (number(circle, "cx"), number(circle, "cy"));
+            let covered = (*left..=*right).contains(&x) && (*top..=*bottom).contains(&y);
+            assert!(!covered, "\"{words}\" covers a point");
+        }
+    }
+}
+
 #[test]
 fn errors_name_the_flag() {
     let workplace = Workplace::new();
@@ -322,11 +379,11 @@ fn errors_name_the_flag() {
             "--tolerances 1e-1,0",
             ["--tolerances", "expected a finite number > 0"],
         ),
-        ("--repeats 0", ["--repeats", "non-zero"]),
-        ("--samples 0", ["--samples", "non-zero"]),
+        ("--repeats 0", ["--repeats", "at least 1"]),
+        ("--samples 0", ["--samples", "at least 1"]),
         ("--max-triangles -1", ["--max-triangles", "-1"]),
         ("--plot out.pdf", ["--plot", "expected .png or .svg"]),
-        ("--plot-size 10x10", ["--plot-size", "at least 320 x 200"]),
+        ("--plot-size 639x480", ["--plot-size", "at least 640 x 480"]),
         ("--plot-size 960", ["--plot-size", "expected WxH"]),
         ("--json - --csv -", ["--json and --csv", "stdout"]),
         ("--json a --csv ./a", ["./a", "an output too"]),
@@ -335,7 +392,8 @@ fn errors_name_the_flag() {
         ("--pixel-samples 2,1,2", ["--pixel-samples", "2 rays"]),
         ("--pixel-samples 0", ["--pixel-samples", "expected 1 to 16"]),
         ("--size 0x9", ["--size", "0 x 9"]),
-        ("--fov 180", ["field of view", "180"]),
+        ("--fov 180", ["--fov", "180"]),
+        ("--look 0,0,0", ["--look", "not zero"]),
         ("--json nowhere/a", ["nowhere/a", "cannot write"]),
         (
             "--only meshes --max-triangles 1 --plot out.png",

@@ -365,7 +365,7 @@ fn each_half_can_be_had_alone() {
     assert_eq!(run.stdout_text().lines().count(), 3);
     let svg = String::from_utf8(workplace.read("a.svg")).unwrap();
     assert!(
-        svg.starts_with("<svg width=\"960\" height=\"400\""),
+        svg.starts_with("<svg width=\"960\" height=\"480\""),
         "{svg}"
     );
     assert!(

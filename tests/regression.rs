@@ -125,6 +125,7 @@ fn a_texture_of_metal_travels_with_its_factors() {
         "baseColorTexture": { "index": 0 },
         "metallicRoughnessTexture": { "index": 1 },
     });
+    source["asset"]["generator"] = json!("by hand");
     workplace.write("source.gltf", source.to_string());
     let run = workplace.run("export source.gltf -o out.glb").success();
     assert!(!run.stderr.contains("note"), "{run}");
@@ -163,9 +164,8 @@ fn a_file_too_large_is_refused_before_it_is_computed() {
             "out.glb: the file would have at least",
             "at most 4294967295",
         ]);
-    let run = workplace
-        .run("check fine.json --steps=-6..6/100000")
-        .success();
+    let run = workplace.run("check fine.json --steps=-6..6/100000");
+    assert_eq!(run.status, 1, "{run}");
     assert!(run.stderr.contains("at most 4294967295"), "{run}");
     assert_eq!(workplace.files(), ["fine.json"]);
 }
@@ -403,5 +403,27 @@ fn what_is_beyond_the_corners_is_rounded_too() {
         sighting.wanted.precision = Precision::Single;
         let made = sighting.of_one(&plate(0.001)).certificate;
         assert!(made.rounding > 0.2 * tolerance && made.complete, "{made:?}");
+    }
+}
+
+/// Far away the closed form of a gap has a floor, 1e-160 of the distance: at 1e300 that was more than any tolerance, and
+/// a mesh of 2,560 triangles was refined until memory ran out. What is as small as that on the sky needs no refinement.
+#[test]
+fn what_is_farther_away_than_digits_reach_is_left_as_it_is() {
+    let workplace = Workplace::new();
+    workplace
+        .run("export --beta 0 --steps 0 --example sphere --tolerance 1e-2 -o ball.glb")
+        .success();
+    for distance in ["1e120", "1e160", "1e200", "1e300"] {
+        let line = format!(
+            "export ball.glb --observer {distance},0,0 --beta 0.5 -o out.ply --report report.json"
+        );
+        let run = workplace.run(&line);
+        // Not certified: the digits of the place are not enough.
+        assert_eq!(run.status, 1, "{run}");
+        assert!(!run.stderr.contains("would fit"), "{run}");
+        let certificate = &workplace.read_json("report.json")["objects"][0]["certificate"];
+        assert_eq!(certificate["triangles_in"], certificate["triangles_out"]);
+        assert!(certificate["gap"].as_f64() < Some(1e-100), "{certificate}");
     }
 }

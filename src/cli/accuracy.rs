@@ -2,12 +2,15 @@
 
 use anyhow::{Context, bail, ensure};
 use clap::Args;
-use photosurface::{Facts, Precision, Prediction, Scene, Stage, Tolerance, Wanted};
+use photosurface::{Facts, Format, Precision, Prediction, Scene, Stage, Tolerance, Wanted};
 
+use super::args::{Given, whole_number};
 use super::messages::{Verbosity, grouped};
 
 /// Of more objects than this only so many are named.
 const NAMED: usize = 4;
+
+const MOST_TRIANGLES: u64 = 20_000_000;
 
 /// How accurate the result is to be, and what that may cost.
 #[derive(Debug, Args)]
@@ -22,22 +25,29 @@ pub(super) struct AccuracyArgs {
     no_subdivide: bool,
     /// Most triangles of all photosurfaces together; if the tolerance needs more, the largest gaps are closed
     /// first and the result is not certified. Triangles that a source has always stay, even if they are more
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 20_000_000, value_parser = whole_number,
-        allow_negative_numbers = true
-    )]
-    max_triangles: u64,
-    /// Level of detail: a file for each of these tolerances, out_lod0.glb, out_lod1.glb, ...
+    /// [default: 20000000]
+    #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
+    max_triangles: Option<u64>,
+}
+
+/// Several tolerances in place of one.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Accuracy (overrides the scene)")]
+pub(super) struct DetailArgs {
+    /// Levels of detail: each of these tolerances in turn. Of each export writes a file (and a report), out_lod0.glb,
+    /// out_lod1.glb, ..., and check prints a table
     #[arg(long, value_name = "T,T,...", value_delimiter = ',', value_parser = tolerance, allow_hyphen_values = true,
         conflicts_with = "tolerance")]
     lod: Vec<Tolerance>,
 }
 
-impl AccuracyArgs {
+impl DetailArgs {
     /// The scene at each level of detail, with what to add to the names of files.
-    pub(super) fn levels(&self, scene: Scene) -> anyhow::Result<Vec<(String, Scene)>> {
+    pub(super) fn levels(
+        &self,
+        accuracy: &AccuracyArgs,
+        scene: Scene,
+    ) -> anyhow::Result<Vec<(String, Scene)>> {
         if !self.lod.is_empty() {
             for (level, tolerance) in self.lod.iter().enumerate() {
                 let twice = self.lod[..level].contains(tolerance);
@@ -51,16 +61,47 @@ impl AccuracyArgs {
             };
             return Ok(self.lod.iter().enumerate().map(level).collect());
         }
-        let scene = match self.tolerance {
-            Some(tolerance) => scene.with_tolerance_for_all(tolerance),
-            None => scene,
-        };
-        Ok(vec![(String::new(), scene)])
+        Ok(vec![(String::new(), accuracy.scene(scene))])
     }
 
     /// How many levels of detail there are.
     pub(super) fn level_count(&self) -> usize {
         self.lod.len().max(1)
+    }
+}
+
+impl AccuracyArgs {
+    /// The scene with the tolerance that the flag says.
+    pub(super) fn scene(&self, scene: Scene) -> Scene {
+        match self.tolerance {
+            Some(tolerance) => scene.with_tolerance_for_all(tolerance),
+            None => scene,
+        }
+    }
+
+    /// Which of the flags are there.
+    pub(super) fn given(&self) -> [Given; 3] {
+        [
+            ("--tolerance", self.tolerance.is_some()),
+            ("--no-subdivide", self.no_subdivide),
+            ("--max-triangles", self.max_triangles.is_some()),
+        ]
+    }
+
+    fn max_triangles(&self) -> u64 {
+        self.max_triangles.unwrap_or(MOST_TRIANGLES)
+    }
+
+    /// What is wanted of a stage's photosurfaces in a file.
+    pub(super) fn wanted_in(&self, format: Format, scene: &Scene) -> Wanted {
+        let precision = match format {
+            Format::Ply => Precision::Double,
+            Format::Glb | Format::Gltf => Precision::Single,
+        };
+        Wanted {
+            attributes: format.attributes(scene),
+            ..self.wanted(precision)
+        }
     }
 
     /// What is wanted of a stage's photosurfaces.
@@ -82,7 +123,7 @@ impl AccuracyArgs {
         let predictions = stage.predictions(wanted);
         let needed = total(&predictions);
         verbosity.detail(format_args!("about {needed}"));
-        let (stage, loosening) = stage.within_budget(wanted, self.max_triangles);
+        let (stage, loosening) = stage.within_budget(wanted, self.max_triangles());
         if loosening.iter().all(|&times| times == 1.0) {
             return (stage, predictions);
         }
@@ -100,7 +141,7 @@ impl AccuracyArgs {
             prediction.reachable &= *times == 1.0;
         }
         let advice = match &loosened[..] {
-            _ if predicted(&predictions) > self.max_triangles as f64 => {
+            _ if predicted(&predictions) > self.max_triangles() as f64 => {
                 "no tolerance would fit".to_owned()
             }
             [(_, fitting)] if loosening.len() == 1 => format!("--tolerance {fitting} would fit"),
@@ -118,19 +159,25 @@ impl AccuracyArgs {
         };
         verbosity.note(format_args!(
             "the tolerance needs about {needed}, more than --max-triangles {} leaves room for; {advice}",
-            grouped(self.max_triangles as usize),
+            grouped(self.max_triangles() as usize),
         ));
         (stage, predictions)
     }
 
+    /// Whether predictions foretell that [`AccuracyArgs::is_kept`] will say yes.
+    pub(super) fn will_be_kept(&self, predictions: &[Prediction]) -> bool {
+        predictions.iter().all(|prediction| prediction.reachable)
+            && predicted(predictions).round() <= self.max_triangles() as f64
+    }
+
     /// Whether the photosurfaces are within their tolerances and the budget; says so where they are not.
     pub(super) fn is_kept(&self, made: &Tally, verbosity: Verbosity) -> bool {
-        let within_budget = made.triangles as u64 <= self.max_triangles;
+        let within_budget = made.triangles as u64 <= self.max_triangles();
         if !within_budget {
             verbosity.note(format_args!(
                 "{} triangles are more than --max-triangles {}: those that there are before any subdivision stay",
                 grouped(made.triangles),
-                grouped(self.max_triangles as usize)
+                grouped(self.max_triangles() as usize)
             ));
         }
         made.all_certified(verbosity) && within_budget
@@ -195,7 +242,7 @@ impl Tally {
         verbosity.note(format_args!(
             "{} of {} photosurfaces are not within the tolerance; the worst, against what \
              was asked for, is \"{}\", proven within {:.3e} where that was {:.3e} ({}: gap {:.3e}, curvature {:.3e}, \
-             rounding {:.3e})",
+             rounding {:.3e}){}",
             self.open,
             self.photosurfaces,
             worst.name,
@@ -205,18 +252,13 @@ impl Tally {
             certificate.gap,
             certificate.curvature,
             certificate.rounding,
+            match certificate.tolerance {
+                0.0 => "; it has no extent that a tolerance could be a fraction of: give a length, such as --tolerance abs:0.01",
+                _ => "",
+            }
         ));
         false
     }
-}
-
-/// `1000000` or `1e6`
-fn whole_number(text: &str) -> anyhow::Result<u64> {
-    let number: f64 = text.trim().parse().unwrap_or(f64::NAN);
-    // Below 2^53 every whole number is one in f64 too.
-    let is_whole = (0.0..9e15).contains(&number) && number.fract() == 0.0;
-    ensure!(is_whole, "expected a whole number such as 1000000 or 1e6");
-    Ok(number as u64)
 }
 
 /// `1e-3`, `abs:0.01` or `deg:0.02`
@@ -239,14 +281,16 @@ pub(super) fn tolerance(text: &str) -> anyhow::Result<Tolerance> {
 mod tests {
     use super::*;
 
+    /// A flag that tells whether it is there cannot have clap say its default.
     #[test]
-    fn whole_numbers_may_have_an_exponent() {
-        assert_eq!(whole_number("0").unwrap(), 0);
-        assert_eq!(whole_number("20000000").unwrap(), 20_000_000);
-        assert_eq!(whole_number("1e6").unwrap(), 1_000_000);
-        for wrong in ["", "-5", "1.5", "1e20", "inf", "nan", "many"] {
-            assert!(whole_number(wrong).is_err(), "{wrong}");
-        }
+    fn help_says_the_default() {
+        let help = AccuracyArgs::augment_args(clap::Command::new("export"))
+            .render_long_help()
+            .to_string();
+        assert!(
+            help.contains(&format!("[default: {MOST_TRIANGLES}]")),
+            "{help}"
+        );
     }
 
     #[test]

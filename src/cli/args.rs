@@ -1,8 +1,9 @@
 //! Flags that commands share: what to look at, and how to override what the scene says.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use anyhow::{Context, ensure};
+use anyhow::{Context, anyhow, ensure};
 use clap::Args;
 use photosurface::{DVec3, Length, Observer, Scene, Velocity, even_steps};
 
@@ -23,16 +24,16 @@ pub(super) struct InputArgs {
 #[command(next_help_heading = "Observer (overrides the scene)")]
 pub(super) struct ObserverArgs {
     /// Speed of the observer in units of the speed of light, 0 <= B < 1
-    #[arg(long, value_name = "B", group = "speed", allow_negative_numbers = true)]
+    #[arg(long, value_name = "B", group = "speed", value_parser = number, allow_negative_numbers = true)]
     beta: Option<f64>,
     /// 1 - beta, for speeds that beta cannot say, 0 < D <= 1
-    #[arg(long, value_name = "D", group = "speed", allow_negative_numbers = true)]
+    #[arg(long, value_name = "D", group = "speed", value_parser = number, allow_negative_numbers = true)]
     one_minus_beta: Option<f64>,
     /// Lorentz factor of the observer, G >= 1
-    #[arg(long, value_name = "G", group = "speed", allow_negative_numbers = true)]
+    #[arg(long, value_name = "G", group = "speed", value_parser = number, allow_negative_numbers = true)]
     gamma: Option<f64>,
     /// Rapidity of the observer, atanh(beta), from 0 to 350
-    #[arg(long, value_name = "R", group = "speed", allow_negative_numbers = true)]
+    #[arg(long, value_name = "R", group = "speed", value_parser = number, allow_negative_numbers = true)]
     rapidity: Option<f64>,
     /// Direction of the observer's motion, of any length; without a speed it turns the scene's velocity, and
     /// a mesh is seen at rest from that side [default for a mesh: 0,0,-1]
@@ -43,14 +44,14 @@ pub(super) struct ObserverArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     observer: Option<DVec3>,
     /// Scene time of the observation, in scene units [default for a mesh: 0]
-    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true)]
     time: Option<f64>,
     /// Proper times of the observer after the observation at which to look: A,B,C or FROM..TO/COUNT
     /// [default for a mesh: 0]
     #[arg(long, value_name = "A,B,C|FROM..TO/COUNT", value_parser = steps, allow_hyphen_values = true)]
     steps: Option<Steps>,
     /// Radius of a small sphere that marks the observer, in scene units; 0 for none [default for a mesh: 0]
-    #[arg(long, value_name = "R", allow_negative_numbers = true)]
+    #[arg(long, value_name = "R", value_parser = number, allow_negative_numbers = true)]
     marker: Option<f64>,
 }
 
@@ -72,16 +73,14 @@ impl ObserverArgs {
             observer.position = position;
         }
         if let Some(time) = self.time {
-            ensure!(
-                time.is_finite(),
-                "--time is {time}, expected a finite number"
-            );
             observer.time = time;
         }
         if let Some(radius) = self.marker {
             observer.marker = match radius {
                 0.0 => None,
-                radius => Some(Length::new(radius).context("--marker")?),
+                radius => Some(Length::new(radius).map_err(|_| {
+                    anyhow!("--marker is {radius:?}, expected a length, or 0 for none")
+                })?),
             };
         }
         let scene = scene.with_observer(observer);
@@ -145,18 +144,57 @@ fn numbers(text: &str) -> anyhow::Result<Vec<f64>> {
     text.split(',').map(number).collect()
 }
 
-fn number(text: &str) -> anyhow::Result<f64> {
+pub(super) fn number(text: &str) -> anyhow::Result<f64> {
     let text = text.trim();
     let number: f64 = text
         .parse()
-        .with_context(|| format!("\"{text}\" is no number"))?;
+        .with_context(|| format!("\"{text}\" is no number, expected one such as 0.5"))?;
     ensure!(number.is_finite(), "{text} is not finite");
     Ok(number)
+}
+
+/// `1000000` or `1e6`
+pub(super) fn whole_number(text: &str) -> anyhow::Result<u64> {
+    let number: f64 = text.trim().parse().unwrap_or(f64::NAN);
+    // Below 2^53 every whole number is one in f64 too.
+    let is_whole = (0.0..9e15).contains(&number) && number.fract() == 0.0;
+    ensure!(is_whole, "expected a whole number such as 1000000 or 1e6");
+    Ok(number as u64)
+}
+
+/// As [`whole_number`], and not zero.
+pub(super) fn count(text: &str) -> anyhow::Result<NonZeroUsize> {
+    let number = usize::try_from(whole_number(text)?).ok();
+    let number = number.and_then(NonZeroUsize::new);
+    number.with_context(|| format!("{text} is not enough, expected at least 1"))
+}
+
+/// A flag, and whether it is there.
+pub(super) type Given = (&'static str, bool);
+
+/// A flag that would change nothing is an error: whoever gives it expects something of it.
+pub(super) fn refuse(flags: &[Given], why: &str) -> anyhow::Result<()> {
+    match flags.iter().find(|(_, is_given)| *is_given) {
+        Some((flag, _)) => Err(anyhow!("{flag} {why}")),
+        None => Ok(()),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn whole_numbers_may_have_an_exponent() {
+        assert_eq!(whole_number("0").unwrap(), 0);
+        assert_eq!(whole_number("20000000").unwrap(), 20_000_000);
+        assert_eq!(whole_number("1e6").unwrap(), 1_000_000);
+        for wrong in ["", "-5", "1.5", "1e20", "inf", "nan", "many"] {
+            assert!(whole_number(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(count("1").unwrap().get(), 1);
+        assert!(count("0").unwrap_err().to_string().contains("at least 1"));
+    }
 
     #[test]
     fn vectors_and_steps_are_read_as_people_write_them() {

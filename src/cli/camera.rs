@@ -1,11 +1,12 @@
 //! Flags that say what a picture shows and from where, and cameras that frame everything.
 
 use std::f64::consts::PI;
+use std::num::NonZeroU32;
 
-use anyhow::{Context, bail, ensure};
-use photosurface::{Camera, Color, DVec3, PictureSize, Projection, Stage, Wanted};
+use anyhow::{Context, anyhow, bail, ensure};
+use photosurface::{Camera, CameraError, Color, DVec3, PictureSize, Projection, Stage, Wanted};
 
-use super::args::vector;
+use super::args::{Given, number, refuse, vector};
 
 /// From where everything is looked at if nothing else is said: from in front, a little from above and the right.
 const FROM: DVec3 = DVec3::new(0.3, 0.3, 1.0);
@@ -21,7 +22,7 @@ pub(super) const OBSERVER_FOV: f64 = 60.0;
 const DIRECTIONS: usize = 128;
 
 /// A camera that frames something by itself is at least so narrow and at most so wide, in degrees.
-const FIELD: std::ops::RangeInclusive<f64> = 1.0..=100.0;
+const FIELD: std::ops::RangeInclusive<f64> = 1e-6..=100.0;
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Camera (places and directions are in the observer's frame)")]
@@ -37,8 +38,8 @@ pub(super) struct CameraArgs {
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<PictureSize>,
     /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180 [default: 60, from outside
-    /// 30, the observer's on a sheet so that everything is in the picture]
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    /// 30; the observer's on a sheet, and of a mesh without --look and --target, so that everything is in the picture]
+    #[arg(long, value_name = "DEG", value_parser = number, allow_negative_numbers = true)]
     fov: Option<f64>,
     /// Show the whole sky in longitude and latitude instead
     #[arg(long, conflicts_with = "fov")]
@@ -60,8 +61,8 @@ pub(super) struct CameraArgs {
     #[arg(long, conflicts_with = "sheet")]
     pub(super) together: bool,
     /// Rays a pixel along each side: N for N x N of them, from 1 to 16; they smooth edges and textures
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=16))]
-    pub(super) samples: u32,
+    #[arg(long, value_name = "N", default_value = "3", value_parser = samples, allow_negative_numbers = true)]
+    pub(super) samples: NonZeroU32,
     /// Colour where nothing is seen, #rrggbb
     #[arg(long, value_name = "COLOR", value_parser = color, default_value = "#14171c")]
     pub(super) background: Color,
@@ -113,6 +114,17 @@ impl CameraArgs {
         }
     }
 
+    /// Flags of meshes are an error where there are rays alone.
+    pub(super) fn refuse_unused(&self, method: Method, of_meshes: &[Given]) -> anyhow::Result<()> {
+        match self.shows_meshes(method) {
+            true => Ok(()),
+            false => refuse(
+                of_meshes,
+                "is for meshes, which rays do not need; add --method mesh, --view outside or --sheet",
+            ),
+        }
+    }
+
     /// Whether there are photosurfaces in the pictures.
     pub(super) fn shows_meshes(&self, method: Method) -> bool {
         self.sheet || method == Method::Mesh
@@ -133,28 +145,33 @@ impl CameraArgs {
                 vertical_fov_deg: fov,
             },
         };
-        Ok(Camera::new(self.size(), projection, look)?)
+        Camera::new(self.size(), projection, look).map_err(|error| match error {
+            CameraError::FieldOfView(_) => anyhow::Error::new(error).context("--fov"),
+            CameraError::Look(_) if self.look.is_some() => {
+                anyhow::Error::new(error).context("--look")
+            }
+            CameraError::Look(_) if self.target.is_some() => {
+                anyhow!("--target is the place of the camera, expected another one")
+            }
+            _ => error.into(),
+        })
     }
 
     fn aspect(&self) -> f64 {
         f64::from(self.size().width()) / f64::from(self.size().height())
     }
 
-    /// The field of view of the observer at all steps, in degrees; `places` are those of each step.
-    pub(super) fn observer_fov(&self, places: impl Iterator<Item = Vec<DVec3>>) -> f64 {
+    /// The field of view of the observer at all steps, in degrees; `places` are those of each step, of a mesh alone or
+    /// of a scene.
+    pub(super) fn observer_fov(
+        &self,
+        places: impl Iterator<Item = Vec<DVec3>>,
+        is_mesh: bool,
+    ) -> f64 {
+        let is_turned = self.look.is_some() || self.target.is_some();
         match self.fov {
             Some(fov) => fov,
-            None if self.sheet => {
-                let widest = places.map(|places| {
-                    let middle = middle_of_sky(&places);
-                    let angles = places.iter().map(|place| place.angle_between(middle));
-                    angles.fold(0.0, f64::max)
-                });
-                let half = widest.fold(0.0, f64::max) * FRAME;
-                // The narrower side of the picture holds it.
-                let tan = half.min(1.5).tan() / self.aspect().min(1.0);
-                (2.0 * tan.atan().to_degrees()).clamp(*FIELD.start(), *FIELD.end())
-            }
+            None if self.sheet || (is_mesh && !is_turned) => fitting_fov(places, self.size()),
             None => OBSERVER_FOV,
         }
     }
@@ -207,6 +224,21 @@ impl CameraArgs {
         };
         frames.into_iter().map(outside).collect()
     }
+}
+
+/// The field of view in which the observer sees all places of each step, looking to their middle, in degrees.
+pub(super) fn fitting_fov(places: impl Iterator<Item = Vec<DVec3>>, size: PictureSize) -> f64 {
+    let widest = places.map(|places| {
+        let middle = middle_of_sky(&places);
+        // Of small angles the cosine knows nothing.
+        let angle = |place: &DVec3| place.cross(middle).length().atan2(place.dot(middle));
+        places.iter().map(angle).fold(0.0, f64::max)
+    });
+    let half = widest.fold(0.0, f64::max) * FRAME;
+    // The narrower side of the picture holds it.
+    let aspect = f64::from(size.width()) / f64::from(size.height());
+    let tan = half.min(1.5).tan() / aspect.min(1.0);
+    (2.0 * tan.atan().to_degrees()).clamp(*FIELD.start(), *FIELD.end())
 }
 
 /// The middle of the sky that is taken up, not of space: an observer may be in the midst of things.
@@ -272,6 +304,13 @@ pub(super) fn size(text: &str) -> anyhow::Result<PictureSize> {
             .with_context(|| format!("\"{text}\" is no number of pixels, expected a whole number"))
     };
     Ok(PictureSize::new(number(width)?, number(height)?)?)
+}
+
+/// Rays a pixel along each side.
+pub(super) fn samples(text: &str) -> anyhow::Result<NonZeroU32> {
+    let number = text.trim().parse().ok();
+    let number = number.filter(|number: &NonZeroU32| number.get() <= 16);
+    number.with_context(|| format!("\"{text}\" is no number of rays, expected 1 to 16"))
 }
 
 /// `#rrggbb`

@@ -2,19 +2,21 @@
 
 use std::io::Write;
 
-use photosurface::{Format, Precision, Prediction, Stage};
+use photosurface::{Format, Prediction, Stage};
 
-use super::accuracy::{AccuracyArgs, grouped_number, total};
+use super::Status;
+use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, total};
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
-use super::messages::{Verbosity, counted, grouped, print};
+use super::messages::{Verbosity, counted, print};
 
 /// Validate a scene or a mesh, and say what an export would make
 ///
-/// Reads everything that an export would read and prints, for every object, its parts and triangles, how fast
-/// it moves relative to the observer, about how many triangles its photosurfaces take, all steps together, and
-/// whether they will be certified to be within the tolerance.
-/// Makes and writes nothing.
+/// Reads everything that an export would read and prints, for every object, its parts, how fast it moves relative to
+/// the observer, how many triangles there are before refinement and about how many its photosurfaces take, both of all
+/// steps together, and whether they will be certified to be within the tolerance.
+/// Makes and writes nothing. Exit status: 0 where that of the export will be 0, 1 where it will be 1 (not certified, or
+/// more triangles than --max-triangles), 2 an error, 130 interrupted.
 #[derive(Debug, clap::Args)]
 pub(super) struct CheckArgs {
     #[command(flatten)]
@@ -23,6 +25,12 @@ pub(super) struct CheckArgs {
     observer: ObserverArgs,
     #[command(flatten)]
     accuracy: AccuracyArgs,
+    #[command(flatten)]
+    detail: DetailArgs,
+    /// What the export would write: a .ply has double precision, so that it can hold what is far away or very small,
+    /// and the Doppler factor
+    #[arg(long, value_enum, default_value_t = FileFormat::Glb, help_heading = "Output")]
+    format: FileFormat,
     /// Print the table alone, without notes on what is read
     #[arg(short, long, conflicts_with = "verbose", help_heading = "Messages")]
     quiet: bool,
@@ -31,10 +39,30 @@ pub(super) struct CheckArgs {
     verbose: bool,
 }
 
-pub(super) fn run(args: &CheckArgs) -> anyhow::Result<()> {
+/// As `export` writes them.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum FileFormat {
+    Glb,
+    Gltf,
+    Ply,
+}
+
+impl From<FileFormat> for Format {
+    fn from(format: FileFormat) -> Self {
+        match format {
+            FileFormat::Glb => Self::Glb,
+            FileFormat::Gltf => Self::Gltf,
+            FileFormat::Ply => Self::Ply,
+        }
+    }
+}
+
+pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
+    let format = Format::from(args.format);
+    let mut status = Status::Done;
     let verbosity = Verbosity::new(args.quiet, args.verbose);
     let input = Input::read(&args.input, &args.observer, verbosity)?;
-    for (_, scene) in args.accuracy.levels(input.scene)? {
+    for (_, scene) in args.detail.levels(&args.accuracy, input.scene)? {
         let stage = Stage::new(scene, input.models.clone());
         for (name, part) in stage.objects().flat_map(|(_, parts)| parts) {
             verbosity.detail(format_args!(
@@ -43,15 +71,18 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<()> {
                 counted(part.mesh().triangles().len(), "triangle")
             ));
         }
-        if let Err(error) = Format::Glb.least_size(&stage, stage.scene().steps().len()) {
+        if let Err(error) = format.least_size(&stage, stage.scene().steps().len()) {
             verbosity.note(error);
         }
-        Format::Glb.check_range(&stage)?;
-        let wanted = args.accuracy.wanted(Precision::Single);
+        format.check_range(&stage)?;
+        let wanted = args.accuracy.wanted_in(format, stage.scene());
         let (stage, predictions) = args.accuracy.within_budget(stage, wanted, verbosity);
         print(|out| table(&stage, &predictions, out))?;
+        if !args.accuracy.will_be_kept(&predictions) {
+            status = Status::NotCertified;
+        }
     }
-    Ok(())
+    Ok(status)
 }
 
 fn table(stage: &Stage, predictions: &[Prediction], out: &mut dyn Write) -> anyhow::Result<()> {
@@ -71,17 +102,13 @@ fn table(stage: &Stage, predictions: &[Prediction], out: &mut dyn Write) -> anyh
     )?;
     let mut parts_of_all = 0;
     for ((object, parts), prediction) in stage.objects().zip(predictions) {
-        let triangles: usize = parts
-            .iter()
-            .map(|(_, part)| part.mesh().triangles().len())
-            .sum();
         let relative = stage.relative_velocity(object);
         writeln!(
             out,
             "{:<20} {:>6} {:>12} {:>13.6e} {:>10.6} {:>12} {:>16} {:>9}",
             object.name,
             parts.len(),
-            grouped(triangles),
+            grouped_number(prediction.triangles_in),
             relative.gamma(),
             relative.rapidity(),
             scene.tolerance(object).to_string(),

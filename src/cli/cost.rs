@@ -6,13 +6,13 @@ use std::time::Duration;
 
 use anyhow::{Context, bail, ensure};
 use photosurface::{
-    Camera, CostSettings, CostStudy, DVec3, Made, PictureSize, PlotSize, Projection, RaySettings,
-    Stage, StudyError, Tolerance, write_whole,
+    Camera, CameraError, CostSettings, CostStudy, DVec3, Made, PictureSize, PlotSize, Projection,
+    RaySettings, Stage, StudyError, Tolerance, write_whole,
 };
 
 use super::accuracy::tolerance;
-use super::args::{InputArgs, ObserverArgs, vector};
-use super::camera::{OBSERVER_FOV, middle_of_sky, rough_places, size};
+use super::args::{Given, InputArgs, ObserverArgs, count, number, refuse, vector, whole_number};
+use super::camera::{OBSERVER_FOV, fitting_fov, middle_of_sky, rough_places, samples, size};
 use super::cost_tables::{csv_of_meshes, csv_of_rays, tables_of};
 use super::input::Input;
 use super::messages::{Verbosity, grouped, print};
@@ -58,6 +58,7 @@ struct StudyArgs {
         long,
         value_name = "N",
         default_value_t = CostSettings::default().repeats,
+        value_parser = count,
         allow_negative_numbers = true
     )]
     repeats: NonZeroUsize,
@@ -79,21 +80,13 @@ struct MeshArgs {
     #[arg(long, value_name = "T,T,...", value_delimiter = ',', value_parser = tolerance, allow_hyphen_values = true)]
     tolerances: Vec<Tolerance>,
     /// Tolerances that would take more triangles, all photosurfaces together, are foretold and not carried out
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = CostSettings::default().most_triangles,
-        allow_negative_numbers = true
-    )]
-    max_triangles: u64,
+    /// [default: 3000000]
+    #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
+    max_triangles: Option<u64>,
     /// Number of random places at which the error of each tolerance is measured, at least 1; the same ones on every run
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = CostSettings::default().samples,
-        allow_negative_numbers = true
-    )]
-    samples: NonZeroUsize,
+    /// [default: 200000]
+    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
+    samples: Option<NonZeroUsize>,
 }
 
 #[derive(Debug, clap::Args)]
@@ -101,14 +94,15 @@ struct MeshArgs {
 struct PictureArgs {
     /// Rays a pixel along each side to compare: N for N x N of them, as render --samples has it, from 1 to 16; the
     /// reference takes 8 times as many as the largest of them [default: 1,2,4,8]
-    #[arg(long, value_name = "N,N,...", value_delimiter = ',', value_parser = pixel_samples, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N,N,...", value_delimiter = ',', value_parser = samples, allow_hyphen_values = true)]
     pixel_samples: Vec<NonZeroU32>,
-    /// Width and height of the pictures in pixels
-    #[arg(long, value_name = "WxH", value_parser = size, default_value = "320x180")]
-    size: PictureSize,
-    /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180
-    #[arg(long, value_name = "DEG", default_value_t = OBSERVER_FOV, allow_negative_numbers = true)]
-    fov: f64,
+    /// Width and height of the pictures in pixels [default: 320x180]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<PictureSize>,
+    /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180 [default: 60; of a mesh without
+    /// --look so that everything is in the picture]
+    #[arg(long, value_name = "DEG", value_parser = number, allow_negative_numbers = true)]
+    fov: Option<f64>,
     /// Direction in which the observer looks, of any length [default: at each step to the middle of what is there]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     look: Option<DVec3>,
@@ -128,8 +122,8 @@ struct OutputArgs {
     /// slope of theory: .png or .svg
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// Size of the plot in pixels, from 320x200 to 8192x8192 [default: 960x400, or 960x780 for both]
-    #[arg(long, value_name = "WxH", value_parser = plot_size)]
+    /// Size of the plot in pixels, from 640x480 to 8192x8192 [default: 960x480, or 960x780 for both]
+    #[arg(long, value_name = "WxH", value_parser = plot_size, requires = "plot")]
     plot_size: Option<PlotSize>,
 }
 
@@ -153,6 +147,17 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
         !(to_stdout(&output.csv) && only.is_none()),
         "--csv: two tables cannot both go to stdout; choose one with --only meshes or --only rays"
     );
+    match only {
+        Some(Half::Meshes) => refuse(
+            &args.pictures.given(),
+            "is for pictures, which --only meshes leaves out",
+        )?,
+        Some(Half::Rays) => refuse(
+            &args.meshes.given(),
+            "is for meshes, which --only rays leaves out",
+        )?,
+        None => {}
+    }
     let tables = output.tables(only);
     let input = Input::read(&args.input, &args.observer, verbosity)?;
     let files = [&output.json, &output.plot].into_iter().flatten();
@@ -172,12 +177,12 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
         StudyError::RepeatedSamples(_) => anyhow::Error::new(error).context("--pixel-samples"),
         _ => anyhow::Error::new(error).context("--tolerances"),
     })?;
-    tell(&study, args.meshes.max_triangles, verbosity);
+    tell(&study, settings.most_triangles, verbosity);
 
     // The plot may fail: nothing is written before it is there.
     let plot_size = match output.plot_size {
         Some(size) => size,
-        None => PlotSize::new(960, if only.is_none() { 780 } else { 400 })?,
+        None => PlotSize::new(960, if only.is_none() { 780 } else { 480 })?,
     };
     let plot = picture.map(|(path, picture)| {
         let drawn = match picture {
@@ -222,25 +227,56 @@ impl CostArgs {
             tolerances,
             rays,
             repeats: self.study.repeats,
-            most_triangles: self.meshes.max_triangles,
-            samples: self.meshes.samples,
+            most_triangles: self.meshes.max_triangles.unwrap_or(default.most_triangles),
+            samples: self.meshes.samples.unwrap_or(default.samples),
             ..default
         })
     }
 }
 
+impl MeshArgs {
+    fn given(&self) -> [Given; 3] {
+        [
+            ("--tolerances", !self.tolerances.is_empty()),
+            ("--max-triangles", self.max_triangles.is_some()),
+            ("--samples", self.samples.is_some()),
+        ]
+    }
+}
+
 impl PictureArgs {
+    fn given(&self) -> [Given; 4] {
+        [
+            ("--pixel-samples", !self.pixel_samples.is_empty()),
+            ("--size", self.size.is_some()),
+            ("--fov", self.fov.is_some()),
+            ("--look", self.look.is_some()),
+        ]
+    }
+
     /// With the cameras that `render` has for the observer.
     fn settings(&self, input: &Input) -> anyhow::Result<RaySettings> {
         let stage = Stage::new(input.scene.clone(), input.models.clone());
+        let size = match self.size {
+            Some(size) => size,
+            None => PictureSize::new(320, 180)?,
+        };
+        let places = (0..input.scene.steps().len()).map(|step| rough_places(&stage, step));
         let projection = Projection::Pinhole {
-            vertical_fov_deg: self.fov,
+            vertical_fov_deg: match self.fov {
+                Some(fov) => fov,
+                None if input.is_mesh && self.look.is_none() => fitting_fov(places.clone(), size),
+                None => OBSERVER_FOV,
+            },
         };
-        let camera = |step| {
-            let ahead = || middle_of_sky(&rough_places(&stage, step));
-            Camera::new(self.size, projection, self.look.unwrap_or_else(ahead))
+        let camera = |places: Vec<DVec3>| {
+            let look = self.look.unwrap_or_else(|| middle_of_sky(&places));
+            Camera::new(size, projection, look).map_err(|error| match error {
+                CameraError::FieldOfView(_) => anyhow::Error::new(error).context("--fov"),
+                _ => anyhow::Error::new(error).context("--look"),
+            })
         };
-        let cameras: Result<Vec<_>, _> = (0..input.scene.steps().len()).map(camera).collect();
+        let cameras: anyhow::Result<Vec<_>> = places.map(camera).collect();
         let mut settings = RaySettings::new(cameras?);
         if !self.pixel_samples.is_empty() {
             settings.samples.clone_from(&self.pixel_samples);
@@ -317,18 +353,11 @@ fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     Ok(write_whole(path, |writer| Ok(writer.write_all(bytes)?))?)
 }
 
-/// As `render --samples`.
-fn pixel_samples(text: &str) -> anyhow::Result<NonZeroU32> {
-    let number = text.trim().parse().ok();
-    let number = number.filter(|number: &NonZeroU32| number.get() <= 16);
-    number.with_context(|| format!("\"{text}\" is no number of rays, expected 1 to 16"))
-}
-
-/// `960x400`
+/// `960x480`
 fn plot_size(text: &str) -> anyhow::Result<PlotSize> {
     let sides = text
         .split_once('x')
-        .context("expected WxH, such as 960x400")?;
+        .context("expected WxH, such as 960x480")?;
     let pixels = |side: &str| {
         side.parse::<u32>()
             .with_context(|| format!("\"{side}\" is no number of pixels"))
@@ -340,20 +369,37 @@ fn plot_size(text: &str) -> anyhow::Result<PlotSize> {
 mod tests {
     use super::*;
 
+    /// Those whose flags tell whether they are there cannot have clap say them.
+    #[test]
+    fn help_says_the_defaults() {
+        use clap::Args;
+        let help = CostArgs::augment_args(clap::Command::new("cost"))
+            .render_long_help()
+            .to_string();
+        let default = CostSettings::default();
+        for number in [default.most_triangles, default.samples.get() as u64] {
+            assert!(help.contains(&format!("[default: {number}]")), "{help}");
+        }
+        assert!(
+            help.contains(&format!("[default: {OBSERVER_FOV};")),
+            "{help}"
+        );
+    }
+
     #[test]
     fn sizes_of_plots_are_read_as_people_write_them() {
         assert_eq!(
-            plot_size("960x400").unwrap(),
-            PlotSize::new(960, 400).unwrap()
+            plot_size("960x480").unwrap(),
+            PlotSize::new(960, 480).unwrap()
         );
         for wrong in [
             "",
             "960",
             "960x",
-            "960x400x2",
+            "960x480x2",
             "0x0",
-            "9.5x400",
-            "10000x400",
+            "9.5x480",
+            "10000x480",
         ] {
             assert!(plot_size(wrong).is_err(), "{wrong}");
         }

@@ -8,16 +8,17 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, bail, ensure};
+use clap::ValueEnum;
 use indicatif::ProgressBar;
 use photosurface::{
-    Attribute, Export, Facts, Format, GltfFile, GltfOutput, Playback, Precision, Report, Scene,
-    Stage, StageTime, Target, Wanted, WriteError, write_ply, write_whole, write_whole_target,
+    Attribute, Export, Facts, Format, GltfFile, GltfOutput, Playback, Report, Scene, Stage,
+    StageTime, Target, Wanted, WriteError, write_ply, write_whole, write_whole_target,
 };
 
 use super::Status;
-use super::accuracy::{AccuracyArgs, Tally};
+use super::accuracy::{AccuracyArgs, DetailArgs, Tally};
 use super::ahead::in_order;
-use super::args::{InputArgs, ObserverArgs};
+use super::args::{InputArgs, ObserverArgs, number};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print, size};
 use super::output::{
@@ -32,7 +33,7 @@ use super::output::{
 ///
 ///     photosurface export
 ///     photosurface export scene.json -o out.glb
-///     photosurface export bunny.obj --beta 0.9 --steps 0,1,2 -o bunny.glb
+///     photosurface export bunny.obj --beta 0.9 --steps 0,1,2 -o flying.glb
 #[derive(Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(super) struct ExportArgs {
@@ -42,7 +43,10 @@ pub(super) struct ExportArgs {
     observer: ObserverArgs,
     #[command(flatten)]
     accuracy: AccuracyArgs,
-    /// Write these numbers for every vertex: doppler, emission_time, rest_position (overrides the scene)
+    #[command(flatten)]
+    detail: DetailArgs,
+    /// Write these numbers for every vertex: doppler, emission_time (from the moment of observation, so negative),
+    /// rest_position (overrides the scene); not with --animate=morph, whose one mesh has one of each
     #[arg(
         long,
         value_name = "A,A,...",
@@ -67,7 +71,8 @@ struct OutputArgs {
     #[arg(long)]
     split: bool,
     /// Show the steps one after another: "frames", a mesh for each step, there during its frame alone; "morph", one
-    /// mesh for all steps, within the tolerance at each, that moves from one to the next (glTF)
+    /// mesh for all steps, within the tolerance at each, that moves from one to the next (glTF; without --attributes,
+    /// which differ from step to step)
     #[arg(
         long,
         value_name = "HOW",
@@ -82,6 +87,7 @@ struct OutputArgs {
         long,
         value_name = "N",
         default_value_t = 24.0,
+        value_parser = number,
         requires = "animate",
         allow_negative_numbers = true
     )]
@@ -93,7 +99,7 @@ struct OutputArgs {
 
 /// How steps are shown one after another.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Animate {
+pub(super) enum Animate {
     Frames,
     Morph,
 }
@@ -101,7 +107,17 @@ enum Animate {
 pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     let output = &args.output;
     let format = output.format()?;
-    output.check_streams(args.accuracy.level_count())?;
+    output.check_streams(args.detail.level_count())?;
+    if let (Some(_), Some(input)) = (output.animate, &args.input.input) {
+        let is_how = input
+            .to_str()
+            .is_some_and(|how| Animate::from_str(how, false).is_ok());
+        ensure!(
+            !is_how || input.exists(),
+            "{how}: no such file; for an animation write --animate={how}",
+            how = input.display()
+        );
+    }
 
     let mut clock = Clock::default();
     let mut input = Input::read(&args.input, &args.observer, args.verbosity)?;
@@ -113,8 +129,8 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     let path = output.path(&input.name);
     let steps = input.scene.steps().len();
     let levels: Vec<Level> = args
-        .accuracy
-        .levels(input.scene)?
+        .detail
+        .levels(&args.accuracy, input.scene)?
         .into_iter()
         .map(|(suffix, scene)| Level {
             scene,
@@ -178,14 +194,7 @@ fn export(
     mut clock: Clock,
 ) -> anyhow::Result<bool> {
     let verbosity = args.verbosity;
-    let precision = match format {
-        Format::Ply => Precision::Double,
-        Format::Glb | Format::Gltf => Precision::Single,
-    };
-    let wanted = Wanted {
-        attributes: format.attributes(stage.scene()),
-        ..args.accuracy.wanted(precision)
-    };
+    let wanted = args.accuracy.wanted_in(format, stage.scene());
     let stage = match wanted.subdivide {
         true => args.accuracy.within_budget(stage, wanted, verbosity).0,
         false => stage,
@@ -224,7 +233,7 @@ fn export(
         verbosity.detail(format_args!("{name}: {seconds:.3} s"));
     }
     if !is_stdout(&files[0]) {
-        verbosity.result(summary(files, format, &work.tally));
+        verbosity.result(summary(files, format, &stage, &work.tally));
     }
     Ok(args.accuracy.is_kept(&work.tally, verbosity))
 }
@@ -353,7 +362,7 @@ impl OutputArgs {
         let frames_per_second = self.fps;
         ensure!(
             (1e-3..=1e3).contains(&frames_per_second),
-            "--fps is {frames_per_second}, expected a number from 0.001 to 1000"
+            "--fps is {frames_per_second:?}, expected a number from 0.001 to 1000"
         );
         Ok(Some(match animate {
             Animate::Frames => Playback::Frames { frames_per_second },
@@ -492,7 +501,7 @@ fn write_report(
     }
 }
 
-fn summary(files: &[PathBuf], format: Format, made: &Tally) -> String {
+fn summary(files: &[PathBuf], format: Format, stage: &Stage, made: &Tally) -> String {
     let mut bytes = 0;
     for file in files {
         bytes += fs::metadata(file).map_or(0, |data| data.len());
@@ -501,8 +510,13 @@ fn summary(files: &[PathBuf], format: Format, made: &Tally) -> String {
         }
     }
     let place = from_first_to_last(files);
+    let marker = if stage.marker().is_some() {
+        " and the marker"
+    } else {
+        ""
+    };
     format!(
-        "{place}: {}, {}, {}",
+        "{place}: {}, {}{marker}, {}",
         counted(made.photosurfaces, "photosurface"),
         counted(made.triangles, "triangle"),
         size(bytes)

@@ -23,6 +23,8 @@ const STAND_OFF: f64 = 2.0;
 pub(super) struct Input {
     /// What to call it: `bunny` of `bunny.obj`.
     pub(super) name: String,
+    /// Whether it is a mesh without a scene.
+    pub(super) is_mesh: bool,
     /// The scene with everything that the flags say.
     pub(super) scene: Scene,
     /// One for each object of the scene.
@@ -111,6 +113,7 @@ impl Input {
         }
         Ok(Self {
             name: name.to_owned(),
+            is_mesh: false,
             files,
             models,
             scene,
@@ -142,6 +145,7 @@ impl Input {
         }
         Ok(Self {
             name: name.to_owned(),
+            is_mesh: true,
             scene,
             models: vec![model],
             files: findings.files,

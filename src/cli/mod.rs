@@ -19,14 +19,15 @@ mod studio;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Parser, Subcommand, ValueEnum};
 
 /// How a command ended, if not with an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Status {
     /// All that was asked for.
     Done,
-    /// Written, but not proven to be within the tolerance.
+    /// Written, or to be written, but not proven to be within the tolerance.
     NotCertified,
 }
 
@@ -44,8 +45,8 @@ const ERROR: u8 = 2;
 ///
 /// Units: the speed of light is 1; lengths and times share one unit. Coordinates are right-handed, y up.
 /// Results go to files, or to stdout with -o -; everything else goes to stderr.
-/// Exit status: 0 done and certified, 1 written but not certified (budget reached, subdivision off), 2 an error,
-/// nothing written (with --split, steps that were done stay), 130 interrupted.
+/// Exit status: 0 done and certified, 1 written but not certified (budget reached, subdivision off), for check that
+/// it would be, 2 an error, nothing written, 130 interrupted. Of several files, those that are finished stay.
 #[derive(Debug, Parser)]
 #[command(name = "photosurface", version, max_term_width = 100)]
 struct Cli {
@@ -68,7 +69,7 @@ const INTERRUPTED: i32 = 130;
 
 /// Runs the command line of this process.
 pub(crate) fn run() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = Cli::try_parse().unwrap_or_else(|error| advised(error).exit());
     // A handler that cannot be set leaves the system's own, which ends the program too.
     let _ = ctrlc::set_handler(|| {
         photosurface::abandon_writes();
@@ -77,7 +78,7 @@ pub(crate) fn run() -> ExitCode {
     let done = match cli.command {
         Command::Export(args) => export::run(&args),
         Command::Render(args) => render::run(&args),
-        Command::Check(args) => check::run(&args).map(|()| Status::Done),
+        Command::Check(args) => check::run(&args),
         Command::Cost(args) => cost::run(&args).map(|()| Status::Done),
         Command::Example(args) => example::run(&args).map(|()| Status::Done),
         Command::Schema(args) => schema::run(&args).map(|()| Status::Done),
@@ -91,6 +92,25 @@ pub(crate) fn run() -> ExitCode {
             ExitCode::from(ERROR)
         }
     }
+}
+
+/// An error of the command line with advice that helps.
+fn advised(mut error: clap::Error) -> clap::Error {
+    if error.kind() != ErrorKind::UnknownArgument {
+        return error;
+    }
+    let Some(ContextValue::String(argument)) = error.get(ContextKind::InvalidArg) else {
+        return error;
+    };
+    let animation = export::Animate::from_str(argument, false).is_ok();
+    let tip = format!("a similar argument exists: '--animate={argument}'");
+    // To pass a flag "as a value, use '-- --flag'" would make a file name of it.
+    error.remove(ContextKind::Suggested);
+    if animation {
+        let tip = ContextValue::StyledStrs(vec![tip.into()]);
+        error.insert(ContextKind::Suggested, tip);
+    }
+    error
 }
 
 /// Whoever read our stdout has seen enough (`photosurface example sphere | head`).

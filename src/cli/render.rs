@@ -41,8 +41,8 @@ pub(super) struct RenderArgs {
     guides: GuideArgs,
     #[command(flatten)]
     accuracy: AccuracyArgs,
-    /// Where to write a .png; of several steps each has a file: out_step000.png, out_step001.png, ...; - for
-    /// stdout [default: NAME_VIEW.png or NAME_sheet.png in this directory]
+    /// Where to write a .png; of several steps each has a file: out_step000.png, out_step001.png, ..., and those that
+    /// are finished stay when it is interrupted; - for stdout [default: NAME_VIEW.png or NAME_sheet.png in this directory]
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -60,11 +60,8 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
         camera.shows_meshes(method) || !guides.wireframe,
         "--wireframe shows triangles, which rays do not have; add --method mesh or --view outside"
     );
+    camera.refuse_unused(method, &args.accuracy.given())?;
     check_output(args.output.as_deref())?;
-    ensure!(
-        args.accuracy.level_count() == 1,
-        "--lod is for several meshes; render takes one --tolerance"
-    );
     let input = Input::read(&args.input, &args.observer, verbosity)?;
     let kind = match (camera.sheet, camera.view) {
         (true, _) => "sheet",
@@ -89,8 +86,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
         "{steps} steps are as many pictures, they cannot all go to stdout; choose one with --steps"
     );
     check_destinations(files.iter().cloned(), &input.files)?;
-    let mut levels = args.accuracy.levels(input.scene)?;
-    let (_, scene) = levels.pop().expect("one level was made sure of");
+    let scene = args.accuracy.scene(input.scene);
     let mut stage = Stage::new(scene, input.models);
     let wanted = args.accuracy.wanted(Precision::Double);
     if camera.shows_meshes(method) && wanted.subdivide {
@@ -100,13 +96,14 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     let mut studio = Studio::new(
         &stage,
         (camera, guides),
-        method,
+        (method, input.is_mesh),
         wanted,
         verbosity,
         progress.clone(),
     )?;
     studio.take_all(|number, picture| write(&files[number], picture))?;
     progress.finish_and_clear();
+    studio.tell_of_empty_pictures();
     if !is_stdout(&files[0]) {
         verbosity.result(format_args!(
             "{}: {}",

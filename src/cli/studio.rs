@@ -11,7 +11,7 @@ use photosurface::{
 };
 
 use super::accuracy::Tally;
-use super::camera::{CameraArgs, Method, Outside, View, outermost, rough_places};
+use super::camera::{CameraArgs, Method, Outside, View, middle_of_sky, outermost, rough_places};
 use super::guides::{GuideArgs, label};
 use super::messages::{Verbosity, counted};
 
@@ -35,13 +35,17 @@ pub(super) struct Studio<'a> {
     pub(super) tally: Tally,
     /// The first step that has not been counted.
     uncounted: usize,
+    /// Whether a mesh alone is looked at, without a scene.
+    is_mesh: bool,
+    /// The observer's views in which there is nothing, and where the first of them should look.
+    empty: Vec<DVec3>,
 }
 
 impl<'a> Studio<'a> {
     pub(super) fn new(
         stage: &'a Stage,
         (camera, guides): (&'a CameraArgs, &'a GuideArgs),
-        method: Method,
+        (method, is_mesh): (Method, bool),
         wanted: Wanted,
         verbosity: Verbosity,
         progress: ProgressBar,
@@ -59,6 +63,8 @@ impl<'a> Studio<'a> {
             progress,
             tally: Tally::default(),
             uncounted: 0,
+            is_mesh,
+            empty: vec![],
         })
     }
 
@@ -70,7 +76,7 @@ impl<'a> Studio<'a> {
         let steps = self.stage.scene().steps().len();
         let stage = self.stage;
         let all_places = (0..steps).map(|step| rough_places(stage, step));
-        let fov = self.camera.observer_fov(all_places);
+        let fov = self.camera.observer_fov(all_places, self.is_mesh);
         if self.camera.sheet {
             return finished(0, &self.sheet(fov)?);
         }
@@ -149,7 +155,31 @@ impl<'a> Studio<'a> {
                 &mapped
             }
         };
-        Ok(self.take(scenery, &camera, viewpoint))
+        let picture = self.take(scenery, &camera, viewpoint);
+        let background = self.camera.background.0;
+        if picture.bytes().chunks(3).all(|pixel| pixel == background) {
+            self.empty.push(middle_of_sky(&places));
+        }
+        Ok(picture)
+    }
+
+    /// Says where there is nothing to be seen, and where there would be.
+    pub(super) fn tell_of_empty_pictures(&self) {
+        let Some(DVec3 { x, y, z }) = self.empty.first() else {
+            return;
+        };
+        let steps = self.stage.scene().steps().len();
+        let which = match steps {
+            1 => "nothing is to be seen in the picture".to_owned(),
+            _ => format!(
+                "nothing is to be seen at {} of {steps} steps",
+                self.empty.len()
+            ),
+        };
+        self.verbosity.note(format_args!(
+            "{which}: what there is is in another direction, or smaller than a pixel; try --look={x:.3},{y:.3},{z:.3} \
+             with a --fov, or --full-sky"
+        ));
     }
 
     fn outside_view(&mut self, steps: Range<usize>, outside: &Outside) -> anyhow::Result<Picture> {
@@ -194,7 +224,7 @@ impl<'a> Studio<'a> {
 
     fn take(&self, scenery: &Scenery, camera: &Camera, viewpoint: Viewpoint) -> Picture {
         let options = PictureOptions {
-            samples: self.camera.samples,
+            samples: self.camera.samples.get(),
             background: self.camera.background,
             wireframe: self.guides.wireframe.then_some(WIRE),
         };

@@ -31,6 +31,9 @@ const SPENT_AT_LEAST: f64 = 1.05;
 pub struct Prediction {
     /// About how many triangles its photosurfaces will have, all steps together.
     pub triangles: f64,
+    /// How many there are before any refinement, all steps together: of a round shape, as fine as its tolerance asks
+    /// for. In certificates `triangles_in`.
+    pub triangles_in: f64,
     /// Whether its tolerance can be kept, by as many triangles as that.
     ///
     /// Not where rounding alone takes more, where the observer touches a surface and the tolerance is an angle, or
@@ -47,6 +50,7 @@ impl Stage {
                 let foresight = self.foresee(object, wanted);
                 Prediction {
                     triangles: foresight.triangles,
+                    triangles_in: foresight.before,
                     reachable: foresight.reachable,
                 }
             })

@@ -5,6 +5,7 @@ use std::ops::Range;
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// What vector pictures are drawn with is up to the viewer; this is what it is asked for.
 pub(super) const FAMILY: &str = "sans-serif";
@@ -50,17 +51,59 @@ pub(super) struct Panel {
     /// The same in words.
     pub(super) slope_text: &'static str,
     pub(super) curves: Vec<Curve>,
-    /// Where there are no curves.
-    pub(super) legend: SeriesLabelPosition,
 }
 
+/// What a line or a dot stands for, and where in its line of the legend it stands.
+pub(super) struct Entry<'a> {
+    text: &'static str,
+    /// `None` of the line of theory.
+    curve: Option<&'a Curve>,
+    left: i32,
+}
+
+/// In pixels: of letters, from line to line of a legend, of a swatch with room around it, and to the axes.
+const LETTERS: f64 = 14.0;
+const LINE: f64 = 19.0;
+const SWATCH: f64 = 24.0;
+const ASIDE: f64 = 62.0;
+const MARGIN: f64 = 8.0;
+
 impl Panel {
-    pub(super) fn draw<B: DrawingBackend>(
+    /// What stands for what, line by line, none wider than the area.
+    pub(super) fn legend<B: DrawingBackend>(
         &self,
         area: &DrawingArea<B, Shift>,
         scale: f64,
+    ) -> Result<Vec<Vec<Entry<'_>>>, DrawingAreaErrorKind<B::ErrorType>> {
+        let px = |pixels: f64| (pixels * scale).round() as i32;
+        let style = (FAMILY, LETTERS * scale).into_text_style(area);
+        let room = area.dim_in_pixel().0 as i32 - px(ASIDE + 2.0 * MARGIN);
+        let curves = self.curves.iter().map(|curve| (curve.label, Some(curve)));
+        let mut lines: Vec<Vec<Entry<'_>>> = vec![vec![]];
+        let mut left = 0;
+        for (text, curve) in curves.chain([(self.slope_text, None)]) {
+            let width = px(SWATCH) + area.estimate_text_size(text, &style)?.0 as i32;
+            if left > 0 && left + width > room {
+                lines.push(vec![]);
+                left = 0;
+            }
+            let line = lines.last_mut().expect("there is a first line");
+            line.push(Entry { text, curve, left });
+            left += width + px(2.0 * MARGIN);
+        }
+        Ok(lines)
+    }
+
+    /// The legend is in a strip of so many lines above the axes, where it covers no curve.
+    pub(super) fn draw<B: DrawingBackend>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        legend_lines: usize,
+        scale: f64,
     ) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
         let px = |pixels: f64| (pixels * scale).round() as i32;
+        let (strip, area) = area.split_vertically(px(MARGIN + LINE * legend_lines as f64));
+        self.draw_legend(&strip, scale)?;
         let [x, y] = [|p: &(f64, f64)| p.0, |p: &(f64, f64)| p.1].map(|coordinate| {
             let values = self
                 .curves
@@ -70,17 +113,20 @@ impl Panel {
                 (low.min(value), high.max(value))
             })
         });
-        // Whole decades upwards with room for the legend.
-        let (bottom, top) = (
-            y.0.floor(),
-            (y.1 + 0.15 * (y.1 - y.0)).ceil().max(y.0.floor() + 1.0),
-        );
+        // Whole decades.
+        let (bottom, top) = (y.0.floor(), y.1.ceil().max(y.0.floor() + 1.0));
         let (left, right) = (x.0 - 0.2, x.1 + 0.2);
-        let small = (FAMILY, 14.0 * scale).into_font();
-        let mut chart = ChartBuilder::on(area)
-            .margin(px(8.0))
+        let small = (FAMILY, LETTERS * scale).into_font();
+        let (width, height) = area.dim_in_pixel();
+        // As many marks as have room for their numbers.
+        let marks = |side: u32, beside: f64, each: f64| {
+            ((f64::from(side) / scale - beside) / each).max(2.0) as usize
+        };
+        let mut chart = ChartBuilder::on(&area)
+            .margin(px(MARGIN))
+            .margin_top(0)
             .x_label_area_size(px(42.0))
-            .y_label_area_size(px(62.0))
+            .y_label_area_size(px(ASIDE))
             .build_cartesian_2d(Decades(left, right), Decades(bottom, top))?;
         chart
             .configure_mesh()
@@ -88,9 +134,11 @@ impl Panel {
             .axis_style(GREY.stroke_width(px(1.0) as u32))
             .set_all_tick_mark_size(px(4.0))
             .label_style(small.clone())
-            .axis_desc_style(small.clone())
+            .axis_desc_style(small)
             .x_desc(self.x_text)
             .y_desc(self.y_text)
+            .x_labels(marks(width, ASIDE + 2.0 * MARGIN, 42.0))
+            .y_labels(marks(height, 42.0 + MARGIN, 20.0))
             .x_label_formatter(&|x| mark(-x))
             .y_label_formatter(&|&y| mark(y))
             .draw()?;
@@ -100,37 +148,54 @@ impl Panel {
         let ends = [left.max(reaches(bottom)), right.min(reaches(top))];
         let slope = ends.map(|x| (x, cost + self.slope * (x - at)));
         let thin = GREY.stroke_width(px(1.0) as u32);
-        chart
-            .draw_series(DashedLineSeries::new(slope, px(5.0), px(4.0), thin))?
-            .label(self.slope_text)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + px(18.0), y)], thin));
+        chart.draw_series(DashedLineSeries::new(slope, px(5.0), px(4.0), thin))?;
         for curve in &self.curves {
             let (color, joined) = (curve.color, curve.joined);
             let line = color.stroke_width(px(2.0) as u32);
             let joint = if joined { &curve.points[..] } else { &[] };
             chart.draw_series(LineSeries::new(joint.iter().copied(), line))?;
             let dots = curve.points.iter();
-            chart
-                .draw_series(dots.map(|&point| dot(point, px(3.5), color, joined)))?
-                .label(curve.label)
-                .legend(move |(x, y)| dot((x + px(9.0), y), px(3.5), color, joined));
+            chart.draw_series(dots.map(|&point| dot(point, px(3.5), color, joined)))?;
         }
-        chart
-            .configure_series_labels()
-            .position(self.legend.clone())
-            .legend_area_size(px(22.0))
-            .margin(px(6.0))
-            .background_style(WHITE.mix(0.85))
-            .label_font(small)
-            .draw()
+        Ok(())
+    }
+
+    fn draw_legend<B: DrawingBackend>(
+        &self,
+        strip: &DrawingArea<B, Shift>,
+        scale: f64,
+    ) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+        let px = |pixels: f64| (pixels * scale).round() as i32;
+        let style = (FAMILY, LETTERS * scale).into_text_style(strip);
+        let style = style.pos(Pos::new(HPos::Left, VPos::Center));
+        for (number, line) in self.legend(strip, scale)?.iter().enumerate() {
+            let y = px(LINE * (number as f64 + 0.5));
+            for entry in line {
+                let x = px(ASIDE + MARGIN) + entry.left;
+                let text = (x + px(SWATCH), y);
+                let dash = |from: f64, to: f64| {
+                    let thin = GREY.stroke_width(px(1.0) as u32);
+                    PathElement::new([(x + px(from), y), (x + px(to), y)], thin)
+                };
+                match entry.curve {
+                    Some(curve) => {
+                        let middle = (x + px(10.0), y);
+                        strip.draw(&dot(middle, px(3.5), curve.color, curve.joined))?;
+                    }
+                    None => {
+                        strip.draw(&dash(2.0, 9.0))?;
+                        strip.draw(&dash(12.0, 19.0))?;
+                    }
+                }
+                strip.draw(&Text::new(entry.text, text, style.clone()))?;
+            }
+        }
+        Ok(())
     }
 }
 
 /// An axis of logarithms, from one to another, with its marks at whole ones, and between them where there are few.
 struct Decades(f64, f64);
-
-/// More marks than this are too many to read.
-const MOST_MARKS: i32 = 10;
 
 /// On an axis that is shorter there are marks at 2 and 5 too.
 const FEW_DECADES: f64 = 3.0;
@@ -144,17 +209,19 @@ impl Ranged for Decades {
         from + (f64::from(to - from) * part).round() as i32
     }
 
-    fn key_points<Hint: KeyPointHint>(&self, _hint: Hint) -> Vec<f64> {
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        let most = hint.max_num_points().max(1);
         let (low, high) = (self.0.ceil() as i32, self.1.floor() as i32);
-        let stride = ((high - low) / MOST_MARKS + 1) as usize;
+        let stride = (high - low).max(0) as usize / most + 1;
         let whole = (low..=high).step_by(stride).map(f64::from);
-        if self.1 - self.0 >= FEW_DECADES {
-            return whole.collect();
-        }
         let between = (low - 1..=high)
             .flat_map(|decade| [1.0, 2.0, 5.0].map(|part: f64| f64::from(decade) + part.log10()));
         let within = |mark: &f64| (self.0..=self.1).contains(mark);
-        between.filter(within).collect()
+        let between: Vec<f64> = between.filter(within).collect();
+        if self.1 - self.0 < FEW_DECADES && between.len() <= most {
+            return between;
+        }
+        whole.collect()
     }
 
     fn range(&self) -> Range<f64> {

@@ -24,8 +24,8 @@ const FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
 /// The bitmap backend knows no half-covered pixels: pictures are drawn so many times larger and made smaller.
 const FINER: u32 = 4;
 
-/// What is smaller holds no curve beside its numbers, what is larger no memory.
-const LEAST_SIZE: (u32, u32) = (320, 200);
+/// What is smaller has no room for two rows of curves beside their words, what is larger no memory.
+const LEAST_SIZE: (u32, u32) = (640, 480);
 const LARGEST_SIDE: u32 = 8192;
 
 // Told apart by everyone, also where red and green are one: M. Okabe, K. Ito, *Color Universal Design* (2008).
@@ -68,7 +68,7 @@ impl PlotSize {
     ///
     /// # Errors
     ///
-    /// Less than 320 by 200, or more than 8192 either way.
+    /// Less than 640 by 480, or more than 8192 either way.
     pub fn new(width: u32, height: u32) -> Result<Self, PlotError> {
         let sides = [(width, LEAST_SIZE.0), (height, LEAST_SIZE.1)];
         let fits = |(side, least)| (least..=LARGEST_SIDE).contains(&side);
@@ -139,10 +139,23 @@ impl CostStudy {
                 None => "What accuracy costs".to_owned(),
             };
             let above = (5.0 * scale) as i32;
+            let title = shortened(
+                title,
+                area,
+                &text.into_text_style(area),
+                area.dim_in_pixel().0,
+            )?;
             let area = area.margin(above, 0, 0, 0).titled(&title, text)?;
             let parts = area.split_evenly((rows.len(), 2));
-            for (panel, part) in rows.iter().flatten().zip(parts) {
-                panel.draw(&part, scale)?;
+            for (row, parts) in rows.iter().zip(parts.chunks(2)) {
+                // The axes of a row begin at one height.
+                let mut lines = 0;
+                for (panel, part) in row.iter().zip(parts) {
+                    lines = lines.max(panel.legend(part, scale)?.len());
+                }
+                for (panel, part) in row.iter().zip(parts) {
+                    panel.draw(part, lines, scale)?;
+                }
             }
             area.present()
         };
@@ -170,7 +183,6 @@ impl CostStudy {
             slope: 1.0,
             slope_text: "inverse to the tolerance",
             curves,
-            legend: SeriesLabelPosition::UpperLeft,
         };
         Some([
             panel(
@@ -211,7 +223,6 @@ impl CostStudy {
             slope: 4.0 / 3.0,
             slope_text: "edges by theory: error to the \u{2212}4/3",
             curves,
-            legend: SeriesLabelPosition::LowerRight,
         };
         Some([
             panel(
@@ -237,6 +248,23 @@ impl CostStudy {
     }
 }
 
+/// As much of a text as there is room for.
+fn shortened<B: DrawingBackend>(
+    mut text: String,
+    area: &DrawingArea<B, Shift>,
+    style: &TextStyle<'_>,
+    room: u32,
+) -> Result<String, DrawingAreaErrorKind<B::ErrorType>> {
+    while area.estimate_text_size(&text, style)?.0 > room {
+        text.truncate(text.trim_end_matches("...").trim_end().len());
+        if text.pop().is_none() {
+            break;
+        }
+        text.push_str("...");
+    }
+    Ok(text)
+}
+
 /// Tolerances or errors as numbers that grow with accuracy, and what they cost, both as logarithms.
 fn logarithms(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     points
@@ -256,15 +284,15 @@ mod tests {
 
     #[test]
     fn sizes_beyond_reason_are_refused() {
-        assert!(PlotSize::new(960, 420).is_ok());
-        for (width, height) in [(319, 420), (960, 199), (8193, 420), (0, 0)] {
+        assert!(PlotSize::new(640, 480).is_ok());
+        for (width, height) in [(639, 480), (960, 479), (8193, 480), (0, 0)] {
             let message = PlotSize::new(width, height).unwrap_err().to_string();
             assert!(
                 message.contains(&format!("{width} x {height}")),
                 "{message}"
             );
             assert!(
-                message.contains("at least 320 x 200 and at most 8192"),
+                message.contains("at least 640 x 480 and at most 8192"),
                 "{message}"
             );
         }

@@ -363,6 +363,7 @@ fn far_edge_gap(a: DVec3, b: DVec3) -> f64 {
     if a == DVec3::ZERO || b == DVec3::ZERO || a == b {
         return 0.0;
     }
+    let ceiling = far_ceiling(a, b);
     let (exponent_a, exponent_b) = (exponent(a), exponent(b));
     let (a, b) = (scaled(a, -exponent_a), scaled(b, -exponent_b));
     let (larger, smaller) = (exponent_a.max(exponent_b), exponent_a.min(exponent_b));
@@ -374,7 +375,24 @@ fn far_edge_gap(a: DVec3, b: DVec3) -> f64 {
         + 2.0 * unit.rho * times_two_to(1.0, smaller - larger).sqrt();
     // Not `unit.product` of equal directions at different distances: that is the floor, which is right here.
     let gap = unit.product / below * (1.0 + 16.0 * EPSILON);
-    times_two_to(gap, smaller).next_up()
+    times_two_to(gap, smaller).next_up().min(ceiling)
+}
+
+/// A gap that an edge far away against its length does not reach; infinity for one that is not.
+///
+/// No second derivative of the distance `r` along the edge is larger than `1/r`, which makes `length^2 / 8` over the
+/// smallest `r`. It has no floor: at 1e300 that of the closed form is larger than most scenes.
+fn far_ceiling(a: DVec3, b: DVec3) -> f64 {
+    let along = b - a;
+    let exponent = exponent(along);
+    let length = times_two_to(scaled(along, -exponent).length(), exponent);
+    let nearest = a.abs().max_element() - length;
+    // Written so that what overflows has none.
+    if nearest > 0.5 * a.abs().max_element() {
+        (length * (length / (8.0 * nearest)) * (1.0 + 16.0 * EPSILON)).next_up()
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// [`triangle_gap`] at distances beyond [`PLAIN`], of sorted corners.

@@ -80,6 +80,10 @@ pub(super) fn read_gltf(bytes: Bytes, folder: &Path) -> Result<(Model, Findings)
 /// Notes what a file has that is no surface.
 fn note_other_content(document: &Document, notes: &mut Vec<Note>) {
     let root = &document.root;
+    if let Some(generator) = own_generator(root) {
+        let generator = generator.to_owned();
+        add_note(notes, Note::Photosurface { generator });
+    }
     let lights = root
         .extensions
         .as_ref()
@@ -105,6 +109,13 @@ fn note_other_content(document: &Document, notes: &mut Vec<Note>) {
     }
 }
 
+/// What wrote the file, if that is this program.
+fn own_generator(root: &Root) -> Option<&str> {
+    let generator = root.asset.generator.as_deref()?;
+    let ours = generator.starts_with(concat!(env!("CARGO_PKG_NAME"), " "));
+    ours.then_some(generator)
+}
+
 /// What the file says of a node and its mesh beyond glTF.
 fn extras(root: &Root, node: usize) -> Option<Arc<Value>> {
     let node = &root.nodes[node];
@@ -114,8 +125,7 @@ fn extras(root: &Root, node: usize) -> Option<Arc<Value>> {
     };
     let of_node = value(&node.extras);
     // What this program writes there it makes anew; what it had from elsewhere goes on.
-    let generator = root.asset.generator.as_deref().unwrap_or_default();
-    if generator.starts_with(concat!(env!("CARGO_PKG_NAME"), " ")) {
+    if own_generator(root).is_some() {
         return of_node?.get("source").cloned().map(Arc::new);
     }
     let of_mesh = node

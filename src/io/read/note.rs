@@ -16,6 +16,11 @@ pub enum Note {
         /// How many there are.
         scenes: usize,
     },
+    /// The file is one that this program wrote: what is in it is how things were seen.
+    Photosurface {
+        /// What it says that wrote it.
+        generator: String,
+    },
     /// Things that have no surface, or that would change it in time.
     NotCarried {
         /// Such as "2 cameras".
@@ -166,6 +171,11 @@ impl fmt::Display for Note {
                 read: Some(read),
                 scenes,
             } => write!(f, "{scenes} scenes: only scenes[{read}] is read"),
+            Self::Photosurface { generator } => write!(
+                f,
+                "written by {generator}: what is in it has been seen from a moving place already and is taken as it \
+                 is, at rest"
+            ),
             Self::NotCarried { what } => write!(f, "{what}: not carried over"),
             Self::Extension { name } => write!(f, "extension {name}: not carried over"),
             Self::Hidden { node } => write!(f, "node {node:?} is not visible: skipped"),

@@ -29,6 +29,24 @@ pub enum WriteError {
         /// The limit that it is beyond.
         limit: f64,
     },
+    /// A number that would be beyond it at any speed.
+    #[error(
+        "{quantity} of vertex {vertex} of the photosurface \"{name}\" is {value:e}, beyond what 32-bit numbers of a \
+         file hold ({limit:e}): it is too far away; choose a smaller distance or a larger unit, or .ply, whose \
+         positions have 64 bits"
+    )]
+    TooFar {
+        /// Which photosurface.
+        name: String,
+        /// Which number.
+        quantity: &'static str,
+        /// Which vertex, from 0.
+        vertex: usize,
+        /// The number.
+        value: f64,
+        /// The limit that it is beyond.
+        limit: f64,
+    },
     /// A vertex that is no number: the scene is too large, or too fast, to compute with.
     #[error(
         "vertex {vertex} of the photosurface \"{name}\" overflows 64-bit numbers: lengths, times \

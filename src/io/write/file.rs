@@ -47,7 +47,7 @@ pub enum Target<'a> {
 ///
 /// # Errors
 ///
-/// The file cannot be written, or `content` fails.
+/// The file cannot be written, one that is there is read-only, or `content` fails.
 pub fn write_whole(
     path: &Path,
     content: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
@@ -104,9 +104,15 @@ impl Destination {
     fn of(path: &Path) -> Result<Self, WriteError> {
         match fs::canonicalize(path) {
             Ok(place) => {
-                let kind = fs::metadata(&place)
-                    .map_err(|source| io_error(path, source))?
-                    .file_type();
+                let data = fs::metadata(&place).map_err(|source| io_error(path, source))?;
+                let kind = data.file_type();
+                if kind.is_file() && data.permissions().readonly() {
+                    // A rename would replace it whatever it allows.
+                    let kind = std::io::ErrorKind::PermissionDenied;
+                    let source =
+                        std::io::Error::new(kind, "the file is read-only, permission denied");
+                    return Err(io_error(path, source));
+                }
                 if kind.is_dir() {
                     let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
                     return Err(io_error(path, source));

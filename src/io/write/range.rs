@@ -35,7 +35,9 @@ impl Format {
                 let (name, mesh) = (&photosurface.facts.name, &photosurface.mesh);
                 match self {
                     Self::Glb | Self::Gltf => {
-                        Packing::new(name, &[mesh.positions()])?;
+                        Packing::new(name, &[mesh.positions()]).map_err(|error| {
+                            by_cause(error, photosurface.facts.relative_rapidity)
+                        })?;
                     }
                     Self::Ply => check_positions(name, mesh)?,
                 }
@@ -43,6 +45,27 @@ impl Format {
             }
         }
         Ok(())
+    }
+}
+
+/// Whether it is the speed that makes a position so large: it makes the way to the step `exp(rapidity)` times as long at
+/// most, and what is seen there as many times as large again.
+fn by_cause(error: WriteError, rapidity: f64) -> WriteError {
+    match error {
+        WriteError::Range {
+            name,
+            quantity,
+            vertex,
+            value,
+            limit,
+        } if value.abs() / rapidity.exp().powi(2) > limit => WriteError::TooFar {
+            name,
+            quantity,
+            vertex,
+            value,
+            limit,
+        },
+        error => error,
     }
 }
 
@@ -83,7 +106,13 @@ mod tests {
             (
                 r#"{ "beta": 0.5 }"#,
                 "1e45",
-                Some("the position of vertex"),
+                Some("it is too far away; choose a smaller distance"),
+                None,
+            ),
+            (
+                r#"{ "rapidity": 60 }"#,
+                "1",
+                Some("choose a smaller rapidity"),
                 None,
             ),
         ] {
