@@ -134,9 +134,9 @@ impl PhotosurfaceMap {
     ///
     /// Rau, Weiskopf, Ruder (1998), section 3.1.
     pub fn seen_position(&self, offset_rest: DVec3) -> DVec3 {
-        match &self.plain {
-            Some(plain) if is_plain(size(offset_rest)) => plain.see::<Split>(offset_rest).position,
-            _ => self.map(offset_rest, self.squeeze, self.stretch),
+        match self.brought_to_plain(offset_rest) {
+            Some((plain, offset, scale)) => plain.see::<Split>(offset).position * scale,
+            None => self.map(offset_rest, self.squeeze, self.stretch),
         }
     }
 
@@ -144,6 +144,19 @@ impl PhotosurfaceMap {
     /// [`PhotosurfaceMap::seen_position`].
     pub fn rest_offset(&self, seen: DVec3) -> DVec3 {
         self.map(seen, self.stretch, self.squeeze)
+    }
+
+    /// The map without a branch, an offset brought by a power of two to where it holds, and the power that makes up for
+    /// that; `None` where velocity or offset are none for it.
+    fn brought_to_plain(&self, offset: DVec3) -> Option<(&PlainMap, DVec3, f64)> {
+        let plain = self.plain.as_ref()?;
+        if is_plain(size(offset)) {
+            return Some((plain, offset, 1.0));
+        }
+        let largest = offset.abs().max_element();
+        let is_normal = offset.is_finite() && largest >= f64::MIN_POSITIVE;
+        let power = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits());
+        is_normal.then(|| (plain, offset / power, power))
     }
 
     fn map(&self, offset: DVec3, factor_u: f64, factor_w: f64) -> DVec3 {
@@ -291,11 +304,10 @@ impl PhotosurfaceMap {
     ///
     /// A zero normal stays zero.
     pub fn seen_normal(&self, offset_rest: DVec3, normal_rest: DVec3) -> DVec3 {
-        match &self.plain {
-            Some(plain) if is_plain(size(offset_rest)) && is_plain(size(normal_rest)) => {
-                return plain.seen_normal(&plain.see::<Split>(offset_rest), normal_rest);
-            }
-            _ => {}
+        if let Some((plain, offset, _)) = self.brought_to_plain(offset_rest)
+            && is_plain(size(normal_rest))
+        {
+            return plain.seen_normal(&plain.see::<Split>(offset), normal_rest);
         }
         let n = self.direction;
         let (toward_across, doppler_factor) = self.toward_across(offset_rest);
