@@ -7,8 +7,8 @@
 //! relativistic image; seen from anywhere else it explains that image.
 //!
 //! The way through the library: read or build a [`Scene`], get the models of its objects with
-//! [`load_models`], put both on a [`Stage`], take its [`Photosurface`]s, write them with [`write_glb`]; [`CostStudy`] tells what accuracy costs. The
-//! mathematics alone is in [`Velocity`], [`Lorentz`], [`PhotosurfaceMap`] and [`View`].
+//! [`load_models`], put both on a [`Stage`], take its [`Photosurface`]s, write them with [`write_glb`]; [`CostStudy`]
+//! tells what accuracy costs. The mathematics alone is in [`Velocity`], [`Lorentz`], [`PhotosurfaceMap`] and [`View`].
 //!
 //! Conventions: c = 1; lengths and times share one unit; right-handed coordinates, y up; angles in radians.
 //! Everything is computed in `f64`. The *scene frame* is that of the scene; the *rest frame* of an object

@@ -5,7 +5,7 @@ use std::io::{self, Seek, Write};
 use std::path::Path;
 
 /// So many bytes wait in memory.
-const HELD_IN_MEMORY: usize = 1 << 18;
+const HELD_IN_MEMORY: usize = 1 << 16;
 
 /// Text to which more is added at its end.
 #[derive(Default)]
