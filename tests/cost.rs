@@ -364,6 +364,22 @@ fn words_cover_neither_curves_nor_each_other_at_the_smallest_size() {
 }
 
 #[test]
+fn what_cannot_be_plotted_is_told_all_the_same() {
+    let workplace = Workplace::new();
+    let run = workplace.run("cost --only meshes --max-triangles 1 --plot out.png -q");
+    assert_eq!(run.status, 2, "{run}");
+    assert!(
+        run.stderr.contains("--plot") && run.stderr.contains("nothing to plot"),
+        "{run}"
+    );
+    assert!(
+        String::from_utf8_lossy(&run.stdout).contains("1e-3"),
+        "{run}"
+    );
+    assert!(workplace.files().is_empty(), "{:?}", workplace.files());
+}
+
+#[test]
 fn errors_name_the_flag() {
     let workplace = Workplace::new();
     for (flags, words) in [
@@ -395,10 +411,6 @@ fn errors_name_the_flag() {
         ("--fov 180", ["--fov", "180"]),
         ("--look 0,0,0", ["--look", "not zero"]),
         ("--json nowhere/a", ["nowhere/a", "cannot write"]),
-        (
-            "--only meshes --max-triangles 1 --plot out.png",
-            ["--plot", "nothing to plot"],
-        ),
     ] {
         workplace.run(&format!("cost {flags} -q")).error(&words);
     }

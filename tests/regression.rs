@@ -427,3 +427,20 @@ fn what_is_farther_away_than_digits_reach_is_left_as_it_is() {
         assert!(certificate["gap"].as_f64() < Some(1e-100), "{certificate}");
     }
 }
+
+/// A reader that went away in the middle of a file counted as success: status 0 means "done and certified".
+#[cfg(unix)]
+#[test]
+fn a_file_that_nobody_reads_to_its_end_is_not_done() {
+    let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_photosurface"))
+        // More than a pipe holds.
+        .args("export --example lattice --no-subdivide -q -o -".split(' '))
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("the program can be started");
+    drop(program.stdout.take());
+    let ended = program.wait_with_output().expect("it ends");
+    assert_eq!(ended.status.code(), Some(141));
+    assert!(ended.stderr.is_empty(), "there is nobody to tell");
+}

@@ -172,14 +172,21 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     progress.enable_steady_tick(Duration::from_millis(200));
     let study = CostStudy::new(&input.scene, &input.models, &settings, || progress.inc(1));
     progress.finish_and_clear();
-    let study = study.map_err(|error| match error {
+    let mut study = study.map_err(|error| match error {
         StudyError::Write { .. } | StudyError::Render(_) => anyhow::Error::new(error),
         StudyError::RepeatedSamples(_) => anyhow::Error::new(error).context("--pixel-samples"),
         _ => anyhow::Error::new(error).context("--tolerances"),
     })?;
+    if input.is_mesh {
+        // It has no title, and plots of two meshes have to be told apart.
+        study.scene.title.get_or_insert(input.name.clone());
+    }
     tell(&study, settings.most_triangles, verbosity);
 
-    // The plot may fail: nothing is written before it is there.
+    if !to_stdout(&output.json) && !to_stdout(&output.csv) {
+        print(|out| tables_of(&study, out))?;
+    }
+    // The plot may fail: no file is written before it is there.
     let plot_size = match output.plot_size {
         Some(size) => size,
         None => PlotSize::new(960, if only.is_none() { 780 } else { 480 })?,
@@ -203,9 +210,6 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
             Half::Rays => csv_of_rays(&study.rays),
         };
         write(path, csv.as_bytes())?;
-    }
-    if !to_stdout(&output.json) && !to_stdout(&output.csv) {
-        print(|out| tables_of(&study, out))?;
     }
     Ok(())
 }

@@ -67,6 +67,9 @@ enum Command {
 /// Exit status after Ctrl-C or a signal that ends the program, as shells have it.
 const INTERRUPTED: i32 = 130;
 
+/// Exit status where nobody reads our stdout any more, as shells have it; there is nobody to tell why, either.
+const BROKEN_PIPE: u8 = 141;
+
 /// Runs the command line of this process.
 pub(crate) fn run() -> ExitCode {
     let cli = Cli::try_parse().unwrap_or_else(|error| advised(error).exit());
@@ -86,7 +89,7 @@ pub(crate) fn run() -> ExitCode {
     match done {
         Ok(Status::Done) => ExitCode::SUCCESS,
         Ok(Status::NotCertified) => ExitCode::from(NOT_CERTIFIED),
-        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) if is_broken_pipe(&error) => ExitCode::from(BROKEN_PIPE),
         Err(error) => {
             messages::error(&error);
             ExitCode::from(ERROR)

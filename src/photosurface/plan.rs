@@ -13,6 +13,7 @@ use super::{Placed, Wanted};
 use crate::light_cone::{Extremes, View};
 use crate::mesh::{Mesh, Part, Shape};
 use crate::scene::Tolerance;
+use crate::spacetime::length;
 use crate::tessellate::{
     Allowance, Bounds, Certificate, Counts, Precision, Singles, largest_gap, local_stretch,
     nearest_point, refine, rounding_bound, survey,
@@ -416,7 +417,7 @@ impl<'a> Plan<'a> {
 
 /// A tolerance as a length; an angle at the nearest vertex.
 fn length_of(tolerance: Tolerance, seen: &[Seen]) -> f64 {
-    let diagonal = || bounds(seen).map_or(0.0, |(low, high)| low.distance(high));
+    let diagonal = || bounds(seen).map_or(0.0, |(low, high)| length(high - low));
     match tolerance {
         Tolerance::Absolute(length) => length,
         Tolerance::Relative(fraction) => fraction * diagonal(),
@@ -453,6 +454,6 @@ fn ball(mesh: &Mesh) -> (DVec3, f64) {
     // Rounded up: the corners of the box are in it.
     (
         0.5 * low + 0.5 * high,
-        0.5 * low.distance(high) * (1.0 + 1e-12),
+        0.5 * length(high - low) * (1.0 + 1e-12),
     )
 }

@@ -10,6 +10,9 @@ use crate::scene::Attributes;
 /// Vertices a thread takes at a time: enough to outweigh handing them over.
 const VERTICES_PER_JOB: usize = 4096;
 
+/// And where it makes arrays of them, few enough for the cache of a core.
+const VERTICES_AT_ONCE: usize = 1024;
+
 /// Numbers at every vertex, those that were asked for.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct VertexData {
@@ -47,28 +50,29 @@ pub(super) struct Seen {
 impl Seen {
     /// Every vertex of a mesh at rest mapped, with its normal and its tangent.
     pub(super) fn new(view: &View, rest: &Mesh) -> Self {
-        let mut positions = vec![DVec3::ZERO; rest.positions().len()];
-        let mut normals = rest
-            .normals()
-            .map(|normals| vec![DVec3::ZERO; normals.len()]);
-        let places = rest.positions().chunks(VERTICES_PER_JOB);
-        let places = places.zip(positions.chunks_mut(VERTICES_PER_JOB));
-        let mut batches: Vec<Batch<'_>> = places
-            .map(|(rest, seen)| Batch {
-                rest,
-                seen,
-                normals: None,
-            })
-            .collect();
-        if let Some((rest, seen)) = rest.normals().zip(normals.as_mut()) {
-            let pairs = rest.chunks(VERTICES_PER_JOB);
-            let pairs = pairs.zip(seen.chunks_mut(VERTICES_PER_JOB));
-            for (batch, normals) in batches.iter_mut().zip(pairs) {
-                batch.normals = Some(normals);
-            }
-        }
-        let extremes = batches.into_par_iter().map(|batch| view.see(batch));
-        let extremes = extremes.reduce(|| Extremes::NONE, Extremes::and);
+        let vertices = rest.positions().len();
+        // Arrays have a known place in the result: it is made where it stays, by all threads.
+        let see = |job: usize| {
+            let first = job * VERTICES_AT_ONCE;
+            let count = VERTICES_AT_ONCE.min(vertices - first);
+            let mut positions = [DVec3::ZERO; VERTICES_AT_ONCE];
+            let mut normals = [DVec3::ZERO; VERTICES_AT_ONCE];
+            let normals_rest = rest.normals().map(|normals| &normals[first..][..count]);
+            let extremes = view.see(Batch {
+                rest: &rest.positions()[first..][..count],
+                seen: &mut positions[..count],
+                normals: normals_rest.map(|rest| (rest, &mut normals[..count])),
+            });
+            (extremes, (positions, normals))
+        };
+        let jobs = (0..vertices.div_ceil(VERTICES_AT_ONCE)).into_par_iter();
+        let (extremes, (positions, normals)): (Vec<_>, (Vec<_>, Vec<_>)) = jobs.map(see).unzip();
+        let flattened = |arrays: Vec<[DVec3; VERTICES_AT_ONCE]>| {
+            let mut vectors = arrays.into_flattened();
+            vectors.truncate(vertices);
+            vectors
+        };
+        let normals = rest.normals().map(|_| flattened(normals));
         let tangents = rest.tangents().map(|tangents| {
             let jobs = rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
             // The map never turns orientation round: the bitangent keeps its sign.
@@ -79,8 +83,8 @@ impl Seen {
             jobs.zip(tangents).map(seen).collect()
         });
         Self {
-            mesh: rest.with_geometry(positions, normals, tangents),
-            extremes,
+            mesh: rest.with_geometry(flattened(positions), normals, tangents),
+            extremes: extremes.into_iter().fold(Extremes::NONE, Extremes::and),
         }
     }
 

@@ -214,12 +214,24 @@ impl Ranged for Decades {
         let (low, high) = (self.0.ceil() as i32, self.1.floor() as i32);
         let stride = (high - low).max(0) as usize / most + 1;
         let whole = (low..=high).step_by(stride).map(f64::from);
-        let between = (low - 1..=high)
-            .flat_map(|decade| [1.0, 2.0, 5.0].map(|part: f64| f64::from(decade) + part.log10()));
-        let within = |mark: &f64| (self.0..=self.1).contains(mark);
-        let between: Vec<f64> = between.filter(within).collect();
-        if self.1 - self.0 < FEW_DECADES && between.len() <= most {
-            return between;
+        let between = |parts: &[u8]| -> Vec<f64> {
+            let of_decade = |decade: i32| {
+                let marks = parts.iter().map(move |&part| f64::from(part).log10());
+                marks.map(move |mark| f64::from(decade) + mark)
+            };
+            let within = |mark: &f64| (self.0..=self.1).contains(mark);
+            (low - 1..=high)
+                .flat_map(of_decade)
+                .filter(within)
+                .collect()
+        };
+        let few = between(&[1, 2, 5]);
+        if few.len() < 2 {
+            // One number alone says nothing of the distance to it.
+            return between(&[1, 2, 3, 4, 5, 6, 7, 8, 9]);
+        }
+        if self.1 - self.0 < FEW_DECADES && few.len() <= most {
+            return few;
         }
         whole.collect()
     }
@@ -234,11 +246,13 @@ fn mark(logarithm: f64) -> String {
     format!("{:.0e}", 10f64.powf(logarithm))
 }
 
-/// Full where points are joined, a ring where not.
+/// Full where points are joined, else a ring around where they may coincide with others.
 fn dot<C>(at: C, radius: i32, color: RGBColor, full: bool) -> Circle<C, i32> {
-    let style = match full {
-        true => color.filled(),
-        false => color.stroke_width((radius / 3).max(1) as u32),
-    };
-    Circle::new(at, radius, style)
+    match full {
+        true => Circle::new(at, radius, color.filled()),
+        false => {
+            let line = color.stroke_width((radius / 3).max(1) as u32);
+            Circle::new(at, radius + (radius / 2).max(1), line)
+        }
+    }
 }

@@ -190,9 +190,9 @@ impl CostStudy {
                 tightest,
                 vec![
                     Curve::new("uniform 1:4", ORANGE, uniform),
-                    Curve::new("foretold", GREY, foretold).points_alone(),
                     Curve::new("made", BLUE, ours),
                     Curve::new("least by theory", GREEN, theory),
+                    Curve::new("foretold", GREY, foretold).points_alone(),
                 ],
             ),
             panel(

@@ -259,6 +259,8 @@ impl<'a> Document<'a> {
         write(&mut self.output)?;
         let offset = self.bytes + padding;
         self.bytes = offset + length as u64;
+        // What comes after this is in vain.
+        self.output.check_size(self.bytes)?;
         let view = buffer::View {
             buffer: Index::new(0),
             byte_length: USize64::from(length),

@@ -74,7 +74,7 @@ pub enum WriteError {
     /// More bytes than the format can say.
     #[error(
         "the file would have at least {bytes} bytes, {format} can have at most {limit}; write the steps to files \
-         of their own"
+         of their own, as --split does"
     )]
     TooLarge {
         /// Which format.
@@ -85,7 +85,7 @@ pub enum WriteError {
         limit: u64,
     },
     /// More vertices in one file than a `u32` index can tell apart.
-    #[error("the file would have {0} vertices, expected at most {max}; write the steps to files of their own", max = u32::MAX)]
+    #[error("the file would have {0} vertices, expected at most {max}; write the steps to files of their own, as --split does", max = u32::MAX)]
     TooManyVertices(usize),
     /// The operating system says no.
     #[error("cannot write {}", path.display())]

@@ -45,14 +45,7 @@ pub(super) fn write_front(
 ) -> Result<(), WriteError> {
     let padded = bytes.next_multiple_of(4);
     let all = BEFORE_JSON + room + BEFORE_DATA + padded;
-    let limit = u64::from(u32::MAX);
-    if all > limit {
-        return Err(WriteError::TooLarge {
-            format: "GLB",
-            bytes: all,
-            limit,
-        });
-    }
+    check_size(all)?;
     let [magic, json_kind, data_kind] = [*b"glTF", *b"JSON", *b"BIN\0"].map(u32::from_le_bytes);
     for word in [magic, 2, all as u32, room as u32, json_kind] {
         out.write_all(&word.to_le_bytes())?;
@@ -62,6 +55,23 @@ pub(super) fn write_front(
     io::copy(&mut io::repeat(b' ').take(spaces), out)?;
     for word in [padded as u32, data_kind] {
         out.write_all(&word.to_le_bytes())?;
+    }
+    Ok(())
+}
+
+/// Whether a GLB can be as large.
+///
+/// # Errors
+///
+/// More than 4 GiB.
+pub(super) fn check_size(bytes: u64) -> Result<(), WriteError> {
+    let limit = u64::from(u32::MAX);
+    if bytes > limit {
+        return Err(WriteError::TooLarge {
+            format: "GLB",
+            bytes,
+            limit,
+        });
     }
     Ok(())
 }
@@ -171,7 +181,9 @@ impl Write for InPlace<'_> {
         } else {
             self.reserve.held
         };
-        if self.held.len() + bytes.len() <= most {
+        // What is large need not wait once it is known where it goes.
+        let waits = self.room.is_none() || bytes.len() < BUFFER / 2;
+        if waits && self.held.len() + bytes.len() <= most {
             self.held.extend_from_slice(bytes);
             return Ok(bytes.len());
         }

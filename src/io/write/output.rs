@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use tempfile::SpooledTempFile;
 
-use super::glb::{InPlace, Json, least_room, padding, write_front};
+use super::glb::{InPlace, Json, check_size, least_room, padding, write_front};
 use super::{Target, WriteError};
 
 /// What may not stand in a relative reference as it is.
@@ -109,6 +109,18 @@ impl<'a> GltfOutput<'a> {
     pub(super) fn describe(&mut self, meshes: usize, bytes: u64) {
         if let Form::InPlace(file) = &mut self.form {
             file.describe(meshes, bytes);
+        }
+    }
+
+    /// Whether so much data finds room at all.
+    ///
+    /// # Errors
+    ///
+    /// More than 4 GiB in a GLB.
+    pub(super) fn check_size(&self, bytes: u64) -> Result<(), WriteError> {
+        match self.form {
+            Form::Parts { .. } => Ok(()),
+            Form::Stream { .. } | Form::InPlace(_) => check_size(bytes),
         }
     }
 
