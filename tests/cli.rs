@@ -2,23 +2,8 @@
 
 mod common;
 
-use common::command::{Workplace, glb_json, node_names};
+use common::command::{BALL, SQUARE, Workplace, glb_json, node_names};
 use serde_json::Value;
-
-/// A square of two triangles.
-const SQUARE: &str = "o square\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
-
-/// A scene with one sphere that takes no time.
-const BALL: &str = r#"{ "observer": { "velocity": { "beta": 0.6, "direction": [1, 0, 0] } },
-  "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1, "resolution": 8 } }, "position": [0, 3, 0] } ],
-  "tolerance": { "relative": 0.1 } }"#;
-
-fn with_ball() -> Workplace {
-    let workplace = Workplace::new();
-    workplace.write("ball.json", BALL);
-    workplace.write("square.obj", SQUARE);
-    workplace
-}
 
 #[test]
 fn the_newcomers_command_writes_the_sphere() {
@@ -93,7 +78,7 @@ fn the_readmes_commands_work() {
 
 #[test]
 fn a_bare_mesh_needs_no_scene() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     let run = workplace
         .run("export square.obj --beta 0.6 --observer 0,0,2")
         .success();
@@ -131,7 +116,7 @@ fn a_bare_mesh_needs_no_scene() {
 
 #[test]
 fn stdin_and_stdout_take_the_place_of_files() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     workplace.run("export ball.json -o file.glb").success();
     let file = workplace.read("file.glb");
     let run = workplace
@@ -198,7 +183,7 @@ fn wrong_scenes_are_told_with_file_line_column_and_expectation() {
 
 #[test]
 fn missing_and_unknown_files_are_told_by_name() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     workplace
         .run("export nosuch.json")
         .error(&["nosuch.json", "No such file"]);
@@ -231,7 +216,7 @@ fn missing_and_unknown_files_are_told_by_name() {
 /// It was replaced by a file beside it that took its name, which asks nobody.
 #[test]
 fn what_is_read_only_is_not_replaced() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     for name in ["out.glb", "report.json", "picture.png"] {
         workplace.write(name, "mine");
         let mut permissions = std::fs::metadata(workplace.path(name))
@@ -257,7 +242,7 @@ fn what_is_read_only_is_not_replaced() {
 /// A photosurface of a photosurface is hardly ever meant.
 #[test]
 fn what_this_program_wrote_is_noted_by_every_command() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     workplace
         .run("export square.obj --beta 0.5 -o seen.glb")
         .success();
@@ -285,7 +270,7 @@ fn what_this_program_wrote_is_noted_by_every_command() {
 
 #[test]
 fn the_marker_is_told_beside_the_triangles() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     let run = workplace
         .run("export square.obj --marker 0.1 -o out.glb")
         .success();
@@ -296,7 +281,7 @@ fn the_marker_is_told_beside_the_triangles() {
 #[test]
 fn an_unwritable_directory_is_told_before_any_work() {
     use std::os::unix::fs::PermissionsExt;
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     let directory = workplace.path("locked");
     std::fs::create_dir(&directory).unwrap();
     std::fs::set_permissions(&directory, std::fs::Permissions::from_mode(0o555)).unwrap();
@@ -314,7 +299,7 @@ fn an_unwritable_directory_is_told_before_any_work() {
 
 #[test]
 fn what_is_read_is_never_written_over() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     workplace.run("export square.obj -o mesh.glb").success();
     let before = workplace.read("mesh.glb");
     workplace
@@ -335,7 +320,7 @@ fn what_is_read_is_never_written_over() {
 
 #[test]
 fn no_two_outputs_are_one_file() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     for arguments in [
         "-o a.glb --report a.glb",
         "-o a.glb --report ./a.glb",
@@ -364,7 +349,7 @@ fn no_two_outputs_are_one_file() {
 
 #[test]
 fn files_come_in_three_formats_and_one_for_each_step() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     workplace
         .run("export ball.json --steps 0,1 -o a.gltf")
         .success();
@@ -422,7 +407,7 @@ fn files_come_in_three_formats_and_one_for_each_step() {
 
 #[test]
 fn the_report_and_the_extras_say_the_same() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     workplace
         .run("export ball.json --steps 0,1 -o out.glb --report report.json")
         .success();
@@ -489,7 +474,7 @@ fn a_large_file_is_what_comes_through_a_pipe_but_for_spaces() {
 
 #[test]
 fn messages_go_to_stderr_as_loud_as_asked() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     let quiet = workplace.run("export ball.json -o out.glb -q").success();
     assert!(
         quiet.stdout.is_empty() && quiet.stderr.is_empty(),

@@ -4,24 +4,9 @@ mod common;
 
 use common::command::Workplace;
 
-/// A square of two triangles.
-const SQUARE: &str = "o square\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
-
-/// A scene with one sphere that takes no time.
-const BALL: &str = r#"{ "observer": { "velocity": { "beta": 0.6, "direction": [1, 0, 0] } },
-  "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1, "resolution": 8 } }, "position": [0, 3, 0] } ],
-  "tolerance": { "relative": 0.1 } }"#;
-
-fn with_ball() -> Workplace {
-    let workplace = Workplace::new();
-    workplace.write("ball.json", BALL);
-    workplace.write("square.obj", SQUARE);
-    workplace
-}
-
 #[test]
 fn check_says_what_an_export_would_make() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     let run = workplace.run("check ball.json --steps 0,1,2").success();
     let (text, triangles) = (run.stdout_text(), 3 * 20 * 2 * 2);
     assert!(text.contains(&format!(" {triangles} ")), "{run}");
@@ -55,7 +40,7 @@ fn counts_and_sizes_are_told_as_people_say_them() {
 /// than what came out.
 #[test]
 fn triangles_in_are_those_of_the_certificates() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     for flags in [
         "--example cube --tolerance 1e-1",
         "--example lattice --tolerance 1e-1",
@@ -79,7 +64,7 @@ fn triangles_in_are_those_of_the_certificates() {
 /// The exit status is that of the export.
 #[test]
 fn check_ends_as_the_export_will() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     for (flags, status) in [
         ("ball.json", 0),
         ("--no-subdivide --tolerance 1e-6", 1),
@@ -107,7 +92,7 @@ fn check_ends_as_the_export_will() {
 /// What is beyond the 32-bit numbers of a GLB is so by distance here, not by speed, and a PLY holds it.
 #[test]
 fn check_is_of_the_format_that_is_to_be_written() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     let far = "square.obj --observer 1e40,0,0 --beta 0.5 --tolerance abs:1e30";
     for line in [format!("check {far}"), format!("export {far} -o out.glb")] {
         let run = workplace

@@ -5,24 +5,9 @@ mod common;
 use common::command::{Workplace, node_names};
 use serde_json::Value;
 
-/// A square of two triangles.
-const SQUARE: &str = "o square\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
-
-/// A scene with one sphere that takes no time.
-const BALL: &str = r#"{ "observer": { "velocity": { "beta": 0.6, "direction": [1, 0, 0] } },
-  "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1, "resolution": 8 } }, "position": [0, 3, 0] } ],
-  "tolerance": { "relative": 0.1 } }"#;
-
-fn with_ball() -> Workplace {
-    let workplace = Workplace::new();
-    workplace.write("ball.json", BALL);
-    workplace.write("square.obj", SQUARE);
-    workplace
-}
-
 #[test]
 fn every_flag_reaches_its_parameter() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     let cases: &[(&str, &str, &[f64])] = &[
         ("", "observer_rapidity", &[std::f64::consts::LN_2]),
         ("--beta 0.8", "observer_beta", &[0.8]),
@@ -86,7 +71,7 @@ fn every_flag_reaches_its_parameter() {
 
 #[test]
 fn impossible_flags_are_refused_by_name() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     workplace
         .run("export --beta 1")
         .error(&["--beta", "beta is 1, expected 0 <= beta < 1"]);
@@ -128,7 +113,7 @@ fn impossible_flags_are_refused_by_name() {
 
 #[test]
 fn what_is_no_number_is_told_with_what_was_expected() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     for (line, words) in [
         (
             "export --beta abc",
@@ -155,7 +140,7 @@ fn what_is_no_number_is_told_with_what_was_expected() {
 
 #[test]
 fn how_to_animate_takes_an_equals_sign_and_that_is_said() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     for line in [
         "export ball.json --steps 0,1 --animate morph",
         "export --animate morph",
@@ -185,7 +170,7 @@ fn flags_of_other_commands_are_not_taken_for_files() {
 
 #[test]
 fn a_flag_that_would_change_nothing_is_refused() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     for (line, words) in [
         (
             "render ball.json --tolerance 1e-2",

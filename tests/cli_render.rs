@@ -4,17 +4,6 @@ mod common;
 
 use common::command::Workplace;
 
-/// A scene with one sphere that takes no time.
-const BALL: &str = r#"{ "observer": { "velocity": { "beta": 0.6, "direction": [1, 0, 0] } },
-  "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1, "resolution": 8 } }, "position": [0, 3, 0] } ],
-  "tolerance": { "relative": 0.1 } }"#;
-
-fn with_ball() -> Workplace {
-    let workplace = Workplace::new();
-    workplace.write("ball.json", BALL);
-    workplace
-}
-
 /// Width and height that a PNG says, and whether it is one.
 fn png_size(bytes: &[u8]) -> (u32, u32) {
     assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"));
@@ -49,7 +38,7 @@ fn every_built_in_scene_is_rendered_by_both_methods_and_from_outside() {
 
 #[test]
 fn a_picture_for_each_step_or_one_for_stdout() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     let line = "render ball.json --size 16x9 --steps 0,1,2";
     workplace.run(line).success();
     let pictures = ["0", "1", "2"].map(|k| format!("ball_observer_step00{k}.png"));
@@ -66,7 +55,7 @@ fn a_picture_for_each_step_or_one_for_stdout() {
 
 #[test]
 fn every_flag_of_a_picture_changes_it() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     let picture = |flags: &str| {
         let line = format!("render ball.json --size 32x18 {flags} -o -");
         workplace.run(&line).success().stdout
@@ -107,7 +96,7 @@ fn every_flag_of_a_picture_changes_it() {
 
 #[test]
 fn pictures_that_make_no_sense_are_refused_before_any_work() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     for (flags, words) in [
         ("--view outside --method rays", vec!["--method mesh"]),
         ("--from 1,2,3", vec!["--view outside"]),
@@ -139,7 +128,7 @@ fn pictures_that_make_no_sense_are_refused_before_any_work() {
             .run(&format!("render ball.json {flags}"))
             .error(&words);
     }
-    assert_eq!(workplace.files(), ["ball.json"]);
+    assert_eq!(workplace.files(), ["ball.json", "square.obj"]);
     let mesh =
         "render ball.json --size 16x9 --method mesh --no-subdivide --tolerance 1e-9 -o m.png";
     let run = workplace.run(mesh);
@@ -150,7 +139,7 @@ fn pictures_that_make_no_sense_are_refused_before_any_work() {
 /// Columns are steps; above what `render` alone shows, below what `--view outside` does.
 #[test]
 fn a_sheet_shows_every_step_twice() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     let flags = "render ball.json --steps 0,3 --size 40x30";
     workplace.run(&format!("{flags} --sheet")).success();
     let sheet = workplace.read("ball_sheet.png");
@@ -215,7 +204,7 @@ fn a_bare_mesh_fills_the_picture() {
 
 #[test]
 fn an_empty_picture_is_noted() {
-    let workplace = with_ball();
+    let workplace = Workplace::with_ball();
     let line = "render ball.json --size 16x9 -o out.png";
     let run = workplace.run(line).success();
     assert!(!run.stderr.contains("note"), "{run}");

@@ -8,6 +8,14 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
+/// A square of two triangles.
+pub(crate) const SQUARE: &str = "o square\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
+
+/// A scene with one sphere that takes no time.
+pub(crate) const BALL: &str = r#"{ "observer": { "velocity": { "beta": 0.6, "direction": [1, 0, 0] } },
+  "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1, "resolution": 8 } }, "position": [0, 3, 0] } ],
+  "tolerance": { "relative": 0.1 } }"#;
+
 /// A directory of its own to run the binary in.
 pub(crate) struct Workplace {
     directory: tempfile::TempDir,
@@ -25,6 +33,14 @@ impl Workplace {
     pub(crate) fn new() -> Self {
         let directory = tempfile::tempdir().expect("a temporary directory can be made");
         Self { directory }
+    }
+
+    /// With [`BALL`] in `ball.json` and [`SQUARE`] in `square.obj`.
+    pub(crate) fn with_ball() -> Self {
+        let workplace = Self::new();
+        workplace.write("ball.json", BALL);
+        workplace.write("square.obj", SQUARE);
+        workplace
     }
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {
