@@ -50,29 +50,8 @@ pub(super) struct Seen {
 impl Seen {
     /// Every vertex of a mesh at rest mapped, with its normal and its tangent.
     pub(super) fn new(view: &View, rest: &Mesh) -> Self {
-        let vertices = rest.positions().len();
-        // Arrays have a known place in the result: it is made where it stays, by all threads.
-        let see = |job: usize| {
-            let first = job * VERTICES_AT_ONCE;
-            let count = VERTICES_AT_ONCE.min(vertices - first);
-            let mut positions = [DVec3::ZERO; VERTICES_AT_ONCE];
-            let mut normals = [DVec3::ZERO; VERTICES_AT_ONCE];
-            let normals_rest = rest.normals().map(|normals| &normals[first..][..count]);
-            let extremes = view.see(Batch {
-                rest: &rest.positions()[first..][..count],
-                seen: &mut positions[..count],
-                normals: normals_rest.map(|rest| (rest, &mut normals[..count])),
-            });
-            (extremes, (positions, normals))
-        };
-        let jobs = (0..vertices.div_ceil(VERTICES_AT_ONCE)).into_par_iter();
-        let (extremes, (positions, normals)): (Vec<_>, (Vec<_>, Vec<_>)) = jobs.map(see).unzip();
-        let flattened = |arrays: Vec<[DVec3; VERTICES_AT_ONCE]>| {
-            let mut vectors = arrays.into_flattened();
-            vectors.truncate(vertices);
-            vectors
-        };
-        let normals = rest.normals().map(|_| flattened(normals));
+        let (positions, normals, extremes) = places(view, rest);
+        let normals = rest.normals().map(|_| normals);
         let tangents = rest.tangents().map(|tangents| {
             let jobs = rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
             // The map never turns orientation round: the bitangent keeps its sign.
@@ -83,8 +62,8 @@ impl Seen {
             jobs.zip(tangents).map(seen).collect()
         });
         Self {
-            mesh: rest.with_geometry(flattened(positions), normals, tangents),
-            extremes: extremes.into_iter().fold(Extremes::NONE, Extremes::and),
+            mesh: rest.with_geometry(positions, normals, tangents),
+            extremes,
         }
     }
 
@@ -92,4 +71,41 @@ impl Seen {
     pub(super) fn condition(&self, view: &View) -> f64 {
         view.stretch_toward(self.extremes.forwardness)
     }
+}
+
+/// Where the vertices are seen, their normals (of no meaning where there are none at rest), and their extremes.
+fn places(view: &View, rest: &Mesh) -> (Vec<DVec3>, Vec<DVec3>, Extremes) {
+    let vertices = rest.positions().len();
+    let see = |first: usize, positions: &mut [DVec3], normals: &mut [DVec3]| {
+        let part = first..first + positions.len();
+        view.see(Batch {
+            rest: &rest.positions()[part.clone()],
+            seen: positions,
+            normals: rest.normals().map(|rest| (&rest[part], normals)),
+        })
+    };
+    if vertices <= VERTICES_AT_ONCE {
+        let (mut positions, mut normals) =
+            (vec![DVec3::ZERO; vertices], vec![DVec3::ZERO; vertices]);
+        let extremes = see(0, &mut positions, &mut normals);
+        return (positions, normals, extremes);
+    }
+    // Arrays have a known place in the result: it is made where it stays, by all threads.
+    let jobs = (0..vertices.div_ceil(VERTICES_AT_ONCE)).into_par_iter();
+    let arrays = jobs.map(|job| {
+        let first = job * VERTICES_AT_ONCE;
+        let count = VERTICES_AT_ONCE.min(vertices - first);
+        let mut positions = [DVec3::ZERO; VERTICES_AT_ONCE];
+        let mut normals = [DVec3::ZERO; VERTICES_AT_ONCE];
+        let extremes = see(first, &mut positions[..count], &mut normals[..count]);
+        (extremes, (positions, normals))
+    });
+    let (extremes, (positions, normals)): (Vec<_>, (Vec<_>, Vec<_>)) = arrays.unzip();
+    let flattened = |arrays: Vec<[DVec3; VERTICES_AT_ONCE]>| {
+        let mut vectors = arrays.into_flattened();
+        vectors.truncate(vertices);
+        vectors
+    };
+    let extremes = extremes.into_iter().fold(Extremes::NONE, Extremes::and);
+    (flattened(positions), flattened(normals), extremes)
 }
