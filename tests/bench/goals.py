@@ -74,11 +74,12 @@ def stand_in(path: str) -> None:
     import trimesh
 
     scene = trimesh.Scene()
-    each = ENGINE_TRIANGLES // ENGINE_PARTS
+    # Four triangles for each section of a cylinder.
+    sections = round(ENGINE_TRIANGLES / ENGINE_PARTS / 4)
     for part in range(ENGINE_PARTS):
-        ball = trimesh.creation.uv_sphere(radius=0.5, count=[round((each / 4) ** 0.5) + 1, round((each / 4) ** 0.5) * 2])
-        ball.apply_translation([part % 5, part // 5 % 5, part // 25])
-        scene.add_geometry(ball, node_name=f"ball{part}", geom_name=f"ball{part}")
+        piece = trimesh.creation.cylinder(radius=0.4, height=0.9, sections=sections)
+        piece.apply_translation([part % 5, part // 5 % 5, part // 25])
+        scene.add_geometry(piece, node_name=f"piece{part}", geom_name=f"piece{part}")
     scene.export(path, include_normals=True)
 
 
