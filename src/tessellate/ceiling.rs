@@ -112,6 +112,34 @@ mod tests {
         assert!(tightest > 0.5, "{tightest}");
     }
 
+    /// Small triangles of every shape across the line of sight: there the ceiling is the gap, but for the little by
+    /// which the near side is nearer, wherever the largest angle is known well.
+    #[test]
+    fn across_the_line_of_sight_the_ceiling_is_the_gap() {
+        let size = 1e-4;
+        let at = |x: f64, y: f64| DVec3::new(size * x, size * y, 1.0);
+        for i in 0..=40 {
+            for j in 1..=40 {
+                // All shapes whose longest side is the one from (0, 0) to (1, 0), with obtuse, right and acute angles.
+                let (x, y) = (f64::from(i) / 40.0, f64::from(j) / 40.0);
+                if x.hypot(y) > 1.0 || (1.0 - x).hypot(y) > 1.0 {
+                    continue;
+                }
+                let [a, b, c] = [at(0.0, 0.0), at(1.0, 0.0), at(x, y)];
+                for corners in [[a, b, c], [b, c, a], [c, b, a]] {
+                    let [p, q, r] = corners;
+                    let (ceiling, gap) = (ceilings(corners).gap, triangle_gap(p, q, r));
+                    assert!(ceiling >= gap, "{x} {y}: {ceiling} {gap}");
+                    // The longest side and its square against the distance, three times.
+                    assert!(
+                        ceiling <= gap * (1.0 + 3.0 * size),
+                        "{x} {y}: {ceiling} {gap}"
+                    );
+                }
+            }
+        }
+    }
+
     #[test]
     fn what_is_near_or_no_number_has_no_ceiling() {
         let near = [DVec3::X, DVec3::new(1.0, 2.0, 0.0), DVec3::Y];
