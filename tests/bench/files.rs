@@ -5,10 +5,10 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod settings;
 
 use std::fmt::Write as _;
 use std::sync::Arc;
-use std::time::Duration;
 
 use common::refining::{Sighting, frozen, model};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -16,6 +16,7 @@ use photosurface::{
     DVec3, Export, Mesh, Photosurface, Shape, Source, Stage, Tolerance, Velocity, Wanted,
     read_model, write_glb, write_ply,
 };
+use settings::settings;
 
 /// Of a thousand to ten million triangles.
 const CELLS: [u32; 5] = [22, 71, 224, 707, 2236];
@@ -125,10 +126,7 @@ fn export(criterion: &mut Criterion) {
 
 criterion_group! {
     name = files;
-    config = Criterion::default()
-        .sample_size(10)
-        .warm_up_time(Duration::from_millis(300))
-        .measurement_time(Duration::from_secs(1));
+    config = settings();
     targets = import, export
 }
 criterion_main!(files);

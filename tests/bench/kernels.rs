@@ -5,13 +5,14 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod settings;
 
 use std::hint::black_box;
-use std::time::Duration;
 
 use common::Random;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use photosurface::{DVec3, PhotosurfaceMap, Velocity, edge_gap, triangle_gap};
+use settings::settings;
 
 const CLUSTERS: usize = 8;
 
@@ -94,10 +95,7 @@ fn gap(criterion: &mut Criterion) {
 
 criterion_group! {
     name = kernels;
-    config = Criterion::default()
-        .sample_size(10)
-        .warm_up_time(Duration::from_millis(300))
-        .measurement_time(Duration::from_secs(1));
+    config = settings();
     targets = map, gap
 }
 criterion_main!(kernels);

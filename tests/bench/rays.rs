@@ -5,9 +5,9 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod settings;
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use common::Random;
 use common::refining::model;
@@ -17,6 +17,7 @@ use photosurface::{
     Scene, Scenery, Source, Stage, Velocity, Viewpoint, load_models,
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use settings::settings;
 
 const THREADS: [usize; 2] = [1, 2];
 
@@ -159,10 +160,7 @@ fn scenes(criterion: &mut Criterion) {
 
 criterion_group! {
     name = rays;
-    config = Criterion::default()
-        .sample_size(10)
-        .warm_up_time(Duration::from_millis(300))
-        .measurement_time(Duration::from_secs(1));
+    config = settings();
     targets = meshes, scenes
 }
 criterion_main!(rays);

@@ -5,14 +5,15 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod settings;
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use common::refining::{Sighting, frozen, model, plate};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use photosurface::{DVec3, Mesh, Shape, Source, Stage, Tolerance, Velocity};
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use settings::settings;
 
 const THREADS: [usize; 2] = [1, 2];
 
@@ -79,10 +80,7 @@ fn plates(criterion: &mut Criterion) {
 
 criterion_group! {
     name = stages;
-    config = Criterion::default()
-        .sample_size(10)
-        .warm_up_time(Duration::from_millis(300))
-        .measurement_time(Duration::from_secs(1));
+    config = settings();
     targets = without_subdivision, plates
 }
 criterion_main!(stages);
