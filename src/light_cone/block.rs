@@ -58,7 +58,7 @@ impl Columns {
     }
 }
 
-/// How the points of a block are seen. One for all blocks: to make it anew takes as long as to use it.
+/// How the points of a block are seen. One for all blocks, as to clear it takes time too.
 pub(super) struct Block {
     rest: Columns,
     pub(super) position: Columns,

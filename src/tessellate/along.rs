@@ -1,4 +1,4 @@
-//! A bound of a triangle's gap along one direction, for a tenth of what the exact gap costs.
+//! A bound of a triangle's gap along one direction, for a fraction of what the exact gap costs.
 
 use glam::{DVec2, DVec3};
 

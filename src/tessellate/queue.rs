@@ -15,8 +15,7 @@ const NONE: u32 = u32::MAX;
 
 /// Faces in buckets of nearly equal flaw; of one bucket, the last comes first.
 ///
-/// A binary heap took an eighth of a triangulation's time, and jumped to and fro in it: the last face of a bucket is
-/// next to the one before, in memory too. The buckets are lists in one place, so that a queue for a few faces costs
+/// A binary heap jumps to and fro in memory: the last face of a bucket is next to the one before, there too. The buckets are lists in one place, so that a queue for a few faces costs
 /// little.
 pub(super) struct Queue {
     /// A bit for every bucket that holds something.
