@@ -374,7 +374,10 @@ impl<'a> Front<'a> {
         mix(self.positions, weights) - self.observer
     }
 
-    /// The triangles; `None` if one of them is turned over.
+    /// The triangles; `None` where they do not cover the triangle exactly once, as rounding may bring about.
+    ///
+    /// They do if no face is turned over and the faces have the boundary of the triangle for their boundary: each of
+    /// its edges once, from one point to the next, and no other edge without a face on either side.
     fn finish(self) -> Option<Pieces> {
         let mut pieces = Pieces {
             inside: self.weights[self.boundary.len()..].to_vec(),
@@ -382,16 +385,29 @@ impl<'a> Front<'a> {
             complete: true,
             ..Pieces::default()
         };
+        let mut edges_on_boundary = 0;
         for face in self.triangulation.inner_faces() {
             let vertices = face.vertices().map(|vertex| vertex.index());
             if self.is_outside(vertices) {
                 continue;
             }
+            for edge in face.adjacent_edges() {
+                if !edge.is_constraint_edge() {
+                    let beyond = edge.rev().face().as_inner()?;
+                    if self.is_outside(beyond.vertices().map(|vertex| vertex.index())) {
+                        return None;
+                    }
+                } else if (edge.from().index() + 1) % self.boundary.len() == edge.to().index() {
+                    edges_on_boundary += 1;
+                } else {
+                    return None;
+                }
+            }
             let [a, b, c] = vertices.map(|vertex| {
                 let weights = self.weights[vertex];
                 DVec2::new(weights.y, weights.z)
             });
-            if (b - a).perp_dot(c - a) <= 0.0 {
+            if !((b - a).perp_dot(c - a) > 0.0) {
                 return None;
             }
             let spots = vertices.map(|vertex| &self.spots[vertex]);
@@ -403,7 +419,7 @@ impl<'a> Front<'a> {
             }
             pieces.triangles.push(vertices.map(|vertex| vertex as u32));
         }
-        Some(pieces)
+        (edges_on_boundary == self.boundary.len()).then_some(pieces)
     }
 }
 
