@@ -49,8 +49,9 @@ pub use render::{
     RenderError, Scenery, Strokes, Viewpoint, lettering, lettering_width,
 };
 pub use scene::{
-    Attribute, Attributes, BUILT_IN_SCENES, BuiltInScene, InvalidScene, Object, Observer, Scene,
-    SceneError, Source, Tolerance, ToleranceError, UnknownAttribute, even_steps,
+    Attribute, Attributes, BUILT_IN_SCENES, BuiltInScene, InvalidScene, MarkerRadius,
+    MarkerRadiusError, Object, Observer, Scene, SceneError, Source, Tolerance, ToleranceError,
+    UnknownAttribute, even_steps,
 };
 pub use spacetime::{Event, Lorentz, MAX_RAPIDITY, Velocity, VelocityError, WorldLine};
 pub use study::{

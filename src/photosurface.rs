@@ -13,7 +13,7 @@ use glam::{DAffine3, DVec3};
 
 use crate::light_cone::View;
 use crate::mesh::{Appearance, Color, Material, Mesh, Model, Part, Shape};
-use crate::scene::{Attributes, Object, Scene, Source};
+use crate::scene::{Attributes, MarkerRadius, Object, Scene, Source};
 use crate::spacetime::Velocity;
 use crate::tessellate::Precision;
 use names::UniqueNames;
@@ -140,7 +140,7 @@ impl Stage {
         let marker = scene
             .observer()
             .marker
-            .map(|radius| marker(&names.unique(MARKER_NAME), radius.get()));
+            .map(|radius| marker(&names.unique(MARKER_NAME), radius));
         let mut objects = Vec::with_capacity(models.len());
         for (object, model) in scene.objects().iter().zip(models) {
             let several = model.parts.len() > 1;
@@ -321,15 +321,15 @@ impl Shaped {
     }
 }
 
-fn marker(name: &str, radius: f64) -> Part {
+fn marker(name: &str, radius: MarkerRadius) -> Part {
     let appearance = Appearance {
         color: Color([0xe7, 0x4c, 0x3c]),
         checker: None,
     };
-    let mut model = Shape::sphere(radius)
+    let mut model = Shape::sphere(radius.get())
         .and_then(|sphere| sphere.with_resolution(MARKER_RESOLUTION))
         .and_then(|sphere| sphere.model(&appearance))
-        .expect("a sphere of a checked radius and a fixed resolution");
+        .expect("every radius from 1e-60 to 1e60 makes a sphere of this resolution");
     let mut part = model.parts.pop().expect("a sphere is one part");
     part.name = name.to_owned();
     part

@@ -103,6 +103,17 @@ fn impossible_flags_are_refused_by_name() {
     workplace
         .run("export --marker -1")
         .error(&["--marker", "-1"]);
+    for radius in ["1e70", "1e-65", "5e-324", "1.7e308", "-0.001", "inf", "nan"] {
+        let scene = format!(r#"{{ "observer": {{ "marker": {radius} }}, "objects": [] }}"#);
+        workplace.write("marker.json", scene);
+        for command in ["export -o out.glb", "render -o out.png", "check", "cost"] {
+            (workplace.run(&format!("{command} ball.json --marker={radius}")))
+                .error(&["--marker", radius]);
+            let run = workplace.run(&format!("{command} marker.json"));
+            run.error(&["marker.json: line 1, column "]);
+        }
+    }
+    std::fs::remove_file(workplace.path("marker.json")).expect("it was written");
     workplace
         .run("export --example cube ball.json")
         .error(&["cannot be used with"]);

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, anyhow, ensure};
 use clap::Args;
-use photosurface::{DVec3, Length, Observer, Scene, Velocity, even_steps};
+use photosurface::{DVec3, MarkerRadius, Observer, Scene, Velocity, even_steps};
 
 /// What to look at.
 #[derive(Debug, Args)]
@@ -78,8 +78,8 @@ impl ObserverArgs {
         if let Some(radius) = self.marker {
             observer.marker = match radius {
                 0.0 => None,
-                radius => Some(Length::new(radius).map_err(|_| {
-                    anyhow!("--marker is {radius:?}, expected a length, or 0 for none")
+                radius => Some(MarkerRadius::new(radius).map_err(|_| {
+                    anyhow!("--marker is {radius:?}, expected a length from 1e-60 to 1e60, or 0 for none")
                 })?),
             };
         }

@@ -6,11 +6,13 @@ mod attributes;
 mod built_in;
 mod forms;
 mod json;
+mod marker;
 mod tolerance;
 
 pub use attributes::{Attribute, Attributes, UnknownAttribute};
 pub use built_in::{BUILT_IN_SCENES, BuiltInScene};
 pub use json::SceneError;
+pub use marker::{MarkerRadius, MarkerRadiusError};
 pub use tolerance::{Tolerance, ToleranceError};
 
 use std::path::PathBuf;
@@ -21,7 +23,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use thiserror::Error;
 
-use crate::mesh::{Appearance, Color, Length, Model, Shape};
+use crate::mesh::{Appearance, Color, Model, Shape};
 use crate::spacetime::{Event, Velocity, WorldLine};
 use forms::{FromObject, Scale, Steps, VelocityForm};
 
@@ -57,7 +59,7 @@ pub struct Observer {
     #[schemars(with = "VelocityForm")]
     pub velocity: Velocity,
     /// Radius of a small sphere that marks the observer in the output; no marker without it.
-    pub marker: Option<Length>,
+    pub marker: Option<MarkerRadius>,
 }
 
 /// A thing in uniform motion.
