@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use common::oracle::{self, Big, big, big_vector, small};
 use common::{RELATIVE, Random, TURN, Worst};
-use photosurface::{DVec3, Event, Lorentz, Velocity, View, WorldLine};
+use photosurface::{DVec3, Event, Lorentz, PhotosurfaceMap, Velocity, View, WorldLine};
 
 /// A pair of boosts, first and second, and what their directions make of rounding.
 struct Pair {
@@ -355,5 +355,65 @@ fn a_fast_fleet_is_slow_to_one_of_its_own() {
         let relative = Lorentz::between(slow, fast).boost_velocity();
         assert_eq!(relative.rapidity(), 0.5);
         assert_eq!(relative.direction(), slow.direction());
+    }
+}
+
+/// Two stretches of about one size were multiplied, and where the product rounded below 1 a bound was below its own
+/// lower bound: 30 of the 99 speeds of a hundredth, two hundredths... of that of light ended in a panic.
+#[test]
+fn equal_and_all_but_equal_velocities_are_at_rest_to_each_other() {
+    let mut random = Random::new(12);
+    let mut velocities = vec![];
+    for direction in [
+        DVec3::X,
+        DVec3::NEG_Z,
+        DVec3::new(1.0, 2.0, 3.0),
+        random.direction(),
+        random.direction(),
+    ] {
+        let speeds = (1..100).map(|n| Velocity::from_beta(f64::from(n) / 100.0, direction));
+        let factors = (0..150).map(|n| Velocity::from_gamma(10f64.powi(n), direction));
+        let rapidities = (0..700).map(|n| Velocity::from_rapidity(0.5 * f64::from(n), direction));
+        let near_light = (1..300).map(|n| Velocity::from_one_minus_beta(10f64.powi(-n), direction));
+        let all = speeds.chain(factors).chain(rapidities).chain(near_light);
+        velocities.extend(all.map(|velocity| velocity.expect("valid")));
+    }
+    for &velocity in &velocities {
+        let (eta, direction) = (velocity.rapidity(), velocity.heading());
+        let neighbours = [eta.next_down().max(0.0), eta, eta.next_up()]
+            .map(|eta| Velocity::from_rapidity(eta.min(350.0), direction).expect("valid"));
+        let turned = direction.with_x(direction.x.next_up());
+        let turned = Velocity::from_rapidity(eta, turned).expect("valid");
+        for other in neighbours.into_iter().chain([velocity, turned]) {
+            for (from, to) in [(velocity, other), (other, velocity)] {
+                let case = format!("{from:?} and {to:?}");
+                let relative = Lorentz::between(from, to).boost_velocity();
+                assert!(
+                    relative.stretch() >= 1.0 && relative.rapidity() >= 0.0,
+                    "{case}"
+                );
+                if other == velocity {
+                    assert_eq!(
+                        (relative.rapidity(), relative.stretch()),
+                        (0.0, 1.0),
+                        "{case}"
+                    );
+                }
+                if other != turned {
+                    // Two rapidities and two stretches, each known to a few units in its last place.
+                    let limit = 8.0 * f64::EPSILON * (1.0 + eta);
+                    assert!(relative.rapidity() <= limit, "{case}: {relative:?}");
+                    assert!(relative.stretch() <= 1.0 + limit, "{case}: {relative:?}");
+                }
+                let map = PhotosurfaceMap::new(&relative);
+                for place in [direction, -direction, DVec3::new(0.3, -0.4, 0.5)] {
+                    let stretch = map.stretch_at(place);
+                    assert!(
+                        (1.0..=relative.stretch()).contains(&stretch),
+                        "{case}: {stretch}"
+                    );
+                }
+            }
+        }
     }
 }

@@ -282,7 +282,7 @@ impl PhotosurfaceMap {
             let c = forwardness.recip().hypot(1.0).recip();
             (c, c / forwardness)
         };
-        self.larger_singular_value(c, s).clamp(1.0, self.stretch)
+        self.larger_singular_value(c, s).min(self.stretch).max(1.0)
     }
 
     /// With the cosine and the sine of half the angle from the direction of motion: see

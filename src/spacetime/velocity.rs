@@ -142,7 +142,8 @@ impl Velocity {
         // Where the unit vector says as much, it alone is kept.
         let exact = exact::cross(heading, unit) == DVec3::ZERO;
         Ok(Self {
-            rapidity,
+            // A speed of -0 is rest as well.
+            rapidity: rapidity.abs(),
             stretch,
             direction: unit,
             heading: if exact { unit } else { heading },
@@ -194,20 +195,23 @@ impl Velocity {
     }
 
     /// In the same direction, or in the opposite one, with another rapidity.
+    ///
+    /// `stretch` is `exp(rapidity)`, rounded by itself: near 1 the two may disagree about the sense of motion. The
+    /// rapidity decides, and no stretch of the result is below 1.
     pub(super) fn with_signed_rapidity(&self, rapidity: f64, stretch: f64) -> Self {
-        let forward = Self {
-            rapidity,
-            stretch,
-            ..*self
-        };
-        if rapidity.is_sign_negative() {
-            Self {
-                rapidity: -rapidity,
-                stretch: 1.0 / stretch,
-                ..forward.reversed()
-            }
+        let (carrier, stretch) = if rapidity.is_sign_negative() {
+            (self.reversed(), 1.0 / stretch)
         } else {
-            forward
+            (*self, stretch)
+        };
+        Self {
+            rapidity: rapidity.abs(),
+            stretch: if rapidity == 0.0 {
+                1.0
+            } else {
+                stretch.max(1.0)
+            },
+            ..carrier
         }
     }
 
