@@ -26,7 +26,7 @@ pub(super) struct AccuracyArgs {
     /// Most triangles of all photosurfaces together; if the tolerance needs more, the largest gaps are closed
     /// first and the result is not certified. Triangles that a source has always stay, even if they are more
     /// [default: 20000000]
-    #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
     max_triangles: Option<u64>,
 }
 

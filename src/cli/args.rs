@@ -24,16 +24,16 @@ pub(super) struct InputArgs {
 #[command(next_help_heading = "Observer (overrides the scene)")]
 pub(super) struct ObserverArgs {
     /// Speed of the observer in units of the speed of light, 0 <= B < 1
-    #[arg(long, value_name = "B", group = "speed", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "B", group = "speed", value_parser = number, allow_hyphen_values = true)]
     beta: Option<f64>,
     /// 1 - beta, for speeds that beta cannot say, 0 < D <= 1
-    #[arg(long, value_name = "D", group = "speed", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "D", group = "speed", value_parser = number, allow_hyphen_values = true)]
     one_minus_beta: Option<f64>,
     /// Lorentz factor of the observer, G >= 1
-    #[arg(long, value_name = "G", group = "speed", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "G", group = "speed", value_parser = number, allow_hyphen_values = true)]
     gamma: Option<f64>,
     /// Rapidity of the observer, atanh(beta), from 0 to 350
-    #[arg(long, value_name = "R", group = "speed", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "R", group = "speed", value_parser = number, allow_hyphen_values = true)]
     rapidity: Option<f64>,
     /// Direction of the observer's motion, of any length; without a speed it turns the scene's velocity, and
     /// a mesh is seen at rest from that side [default for a mesh: 0,0,-1]
@@ -44,14 +44,14 @@ pub(super) struct ObserverArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     observer: Option<DVec3>,
     /// Scene time of the observation, in scene units [default for a mesh: 0]
-    #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", value_parser = number, allow_hyphen_values = true)]
     time: Option<f64>,
     /// Proper times of the observer after the observation at which to look: A,B,C or FROM..TO/COUNT
     /// [default for a mesh: 0]
     #[arg(long, value_name = "A,B,C|FROM..TO/COUNT", value_parser = steps, allow_hyphen_values = true)]
     steps: Option<Steps>,
     /// Radius of a small sphere that marks the observer, in scene units; 0 for none [default for a mesh: 0]
-    #[arg(long, value_name = "R", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "R", value_parser = number, allow_hyphen_values = true)]
     marker: Option<f64>,
 }
 

@@ -39,7 +39,7 @@ pub(super) struct CameraArgs {
     size: Option<PictureSize>,
     /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180 [default: 60, from outside
     /// 30; the observer's on a sheet, and of a mesh without --look and --target, so that everything is in the picture]
-    #[arg(long, value_name = "DEG", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = number, allow_hyphen_values = true)]
     fov: Option<f64>,
     /// Show the whole sky in longitude and latitude instead
     #[arg(long, conflicts_with = "fov")]
@@ -61,7 +61,7 @@ pub(super) struct CameraArgs {
     #[arg(long, conflicts_with = "sheet")]
     pub(super) together: bool,
     /// Rays a pixel along each side: N for N x N of them, from 1 to 16; they smooth edges and textures
-    #[arg(long, value_name = "N", default_value = "3", value_parser = samples, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value = "3", value_parser = samples, allow_hyphen_values = true)]
     pub(super) samples: NonZeroU32,
     /// Colour where nothing is seen, #rrggbb
     #[arg(long, value_name = "COLOR", value_parser = color, default_value = "#14171c")]

@@ -59,7 +59,7 @@ struct StudyArgs {
         value_name = "N",
         default_value_t = CostSettings::default().repeats,
         value_parser = count,
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     repeats: NonZeroUsize,
 }
@@ -81,11 +81,11 @@ struct MeshArgs {
     tolerances: Vec<Tolerance>,
     /// Tolerances that would take more triangles, all photosurfaces together, are foretold and not carried out
     /// [default: 3000000]
-    #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
     max_triangles: Option<u64>,
     /// Number of random places at which the error of each tolerance is measured, at least 1; the same ones on every run
     /// [default: 200000]
-    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
     samples: Option<NonZeroUsize>,
 }
 
@@ -101,7 +101,7 @@ struct PictureArgs {
     size: Option<PictureSize>,
     /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180 [default: 60; of a mesh without
     /// --look so that everything is in the picture]
-    #[arg(long, value_name = "DEG", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = number, allow_hyphen_values = true)]
     fov: Option<f64>,
     /// Direction in which the observer looks, of any length [default: at each step to the middle of what is there]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]

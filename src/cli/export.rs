@@ -89,7 +89,7 @@ struct OutputArgs {
         default_value_t = 24.0,
         value_parser = number,
         requires = "animate",
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     fps: f64,
     /// Write a JSON report of what was made and how long it took; - for stdout
