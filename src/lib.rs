@@ -55,7 +55,9 @@ pub use scene::{
 };
 pub use spacetime::{Event, Lorentz, MAX_RAPIDITY, Velocity, VelocityError, WorldLine};
 pub use study::{
-    CostSettings, CostStudy, Made, MeshCost, Pictures, PlotError, PlotSize, RayCost, RaySettings,
-    Seconds, StudyError, UniformCost, UniformRun,
+    CostSettings, CostStudy, Made, MeshCost, Pictures, RayCost, RaySettings, Seconds, StudyError,
+    UniformCost, UniformRun,
 };
+#[cfg(feature = "plot")]
+pub use study::{PlotError, PlotSize};
 pub use tessellate::{Certificate, Precision, edge_gap, triangle_gap, triangle_gap_place};

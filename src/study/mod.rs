@@ -5,7 +5,9 @@
 mod measured;
 mod memory;
 mod mesh_cost;
+#[cfg(feature = "plot")]
 mod panel;
+#[cfg(feature = "plot")]
 mod plot;
 mod random;
 mod ray_cost;
@@ -18,6 +20,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 pub use mesh_cost::{Made, MeshCost, Seconds};
+#[cfg(feature = "plot")]
 pub use plot::{PlotError, PlotSize};
 pub use ray_cost::{Pictures, RayCost, RaySettings};
 pub use uniform::{UniformCost, UniformRun};
