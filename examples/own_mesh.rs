@@ -29,7 +29,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         velocity: Velocity::from_beta(0.9, DVec3::NEG_Z)?,
         ..Observer::default()
     };
-    let model = Model { parts: vec![wall] };
+    let model = Model {
+        parts: vec![wall],
+        ..Model::default()
+    };
     let object = Object::new("wall", Source::Model(model.clone().into()));
     let stage = Stage::new(Scene::new(observer, vec![object])?, vec![model]);
 

@@ -10,6 +10,7 @@ mod seen;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
+use serde_json::Value;
 
 use crate::light_cone::View;
 use crate::mesh::{Appearance, Color, Material, Mesh, Model, Part, Shape};
@@ -54,6 +55,8 @@ pub struct Stage {
     marker: Option<Part>,
     /// For every object of the scene.
     objects: Vec<Placed>,
+    /// What the source of each says of itself.
+    origins: Vec<Option<Arc<Value>>>,
 }
 
 /// The photosurface of one part of one object at one step.
@@ -141,6 +144,7 @@ impl Stage {
             .observer()
             .marker
             .map(|radius| marker(&names.unique(MARKER_NAME), radius));
+        let origins = models.iter().map(|model| model.origin.clone()).collect();
         let mut objects = Vec::with_capacity(models.len());
         for (object, model) in scene.objects().iter().zip(models) {
             let several = model.parts.len() > 1;
@@ -162,6 +166,7 @@ impl Stage {
             scene,
             marker,
             objects,
+            origins,
         }
     }
 
@@ -233,7 +238,7 @@ impl Stage {
 
     /// What the scene is, in words and numbers.
     pub fn facts(&self) -> SceneFacts {
-        SceneFacts::new(&self.scene)
+        SceneFacts::new(&self.scene, &self.origins)
     }
 
     fn view(&self, object: &Object, proper_time: f64) -> View {

@@ -42,7 +42,10 @@ impl Area {
         let shines = json!({ "extensions": { "KHR_materials_unlit": {} }, "doubleSided": true });
         let material = Arc::new(Material::new(shines, vec![]).expect("a material"));
         let part = Part::new("area", mesh, Some(material)).expect("normals can be had");
-        let model = Model { parts: vec![part] };
+        let model = Model {
+            parts: vec![part],
+            ..Model::default()
+        };
         let observer = Observer {
             velocity: Velocity::from_rapidity(self.rapidity, DVec3::NEG_Z).expect("a rapidity"),
             ..Observer::default()

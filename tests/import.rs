@@ -192,7 +192,10 @@ fn the_default_scene_is_read() {
 fn what_has_no_surface_is_skipped_with_a_note() {
     let (model, notes) = read("zero_scale.glb");
     assert_eq!(names(&model), ["full"]);
-    assert_eq!(notes, ["node \"flat\" is scaled to no volume: skipped"]);
+    assert_eq!(
+        notes,
+        ["node \"flat\" is scaled to a line or a point: skipped"]
+    );
     let (model, notes) = read("points_and_lines.glb");
     assert_eq!(names(&model), ["node"]);
     assert_corners(&model.parts[0], &RECTANGLE);

@@ -16,7 +16,8 @@ pub struct Part {
     mesh: Mesh,
     /// What it is made of; shared by all parts made of the same.
     pub material: Option<Arc<Material>>,
-    /// What else the source says of it, which means nothing here: the `extras` of glTF, of the `node` and the `mesh`.
+    /// What else the source says of it, which means nothing here: the `extras` of glTF, of the `node`, the
+    /// `mesh` and the `primitive`.
     pub extras: Option<Arc<Value>>,
 }
 
@@ -74,6 +75,9 @@ impl Part {
 pub struct Model {
     /// In the order of the source.
     pub parts: Vec<Part>,
+    /// What the source says of itself as a whole: its `copyright`, and the `extras` of glTF of its `asset`, its `scene`
+    /// and the `file`.
+    pub origin: Option<Arc<Value>>,
 }
 
 impl Model {

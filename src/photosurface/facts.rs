@@ -1,9 +1,10 @@
 //! What is said of scenes and photosurfaces in files and in the report.
 
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::scene::Scene;
 use crate::tessellate::Certificate;
@@ -66,10 +67,15 @@ pub struct SceneFacts {
     pub observer_rapidity: f64,
     /// Proper times of the steps, from the observation event.
     pub steps: Vec<f64>,
+    /// What the sources say of themselves as a whole, as they say it: for each that does, the names of its `objects` and
+    /// its `copyright` and `extras`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sources: Vec<Value>,
 }
 
 impl SceneFacts {
-    pub(super) fn new(scene: &Scene) -> Self {
+    /// `origins` say of each object what its source says of itself.
+    pub(super) fn new(scene: &Scene, origins: &[Option<Arc<Value>>]) -> Self {
         let observer = scene.observer();
         Self {
             title: scene.title().map(str::to_owned),
@@ -81,6 +87,40 @@ impl SceneFacts {
             observer_gamma: observer.velocity.gamma(),
             observer_rapidity: observer.velocity.rapidity(),
             steps: scene.steps().to_vec(),
+            sources: sources(scene, origins),
         }
     }
+
+    /// To whom the sources belong, each once; `None` where none says it.
+    pub fn copyright(&self) -> Option<String> {
+        let named = |source: &Value| Some(source.get("copyright")?.as_str()?.to_owned());
+        let mut known = HashSet::new();
+        let all = self.sources.iter().filter_map(named);
+        let all: Vec<String> = all.filter(|text| known.insert(text.clone())).collect();
+        (!all.is_empty()).then(|| all.join("; "))
+    }
+}
+
+/// What sources say of themselves, once for all objects of a source.
+fn sources(scene: &Scene, origins: &[Option<Arc<Value>>]) -> Vec<Value> {
+    let mut places: HashMap<*const Value, usize> = HashMap::new();
+    let mut sources: Vec<(Vec<&str>, &Arc<Value>)> = vec![];
+    for (object, origin) in scene.objects().iter().zip(origins) {
+        let Some(origin) = origin else {
+            continue;
+        };
+        let place = *places.entry(Arc::as_ptr(origin)).or_insert(sources.len());
+        if place == sources.len() {
+            sources.push((vec![], origin));
+        }
+        sources[place].0.push(&object.name);
+    }
+    let said = |(objects, origin): (Vec<&str>, &Arc<Value>)| {
+        let mut source = json!({ "objects": objects });
+        for (name, value) in origin.as_object().into_iter().flatten() {
+            source[name.as_str()] = value.clone();
+        }
+        source
+    };
+    sources.into_iter().map(said).collect()
 }

@@ -1,6 +1,6 @@
 //! Names of photosurfaces in files.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// How a step is called in names of files and of things in them: `step003`.
 pub fn step_label(step: usize) -> String {
@@ -9,7 +9,11 @@ pub fn step_label(step: usize) -> String {
 
 /// Makes names that are unique and mean the same to every reader: ASCII letters, digits, `_` and `-`.
 #[derive(Default)]
-pub(super) struct UniqueNames(HashSet<String>);
+pub(super) struct UniqueNames {
+    taken: HashSet<String>,
+    /// The number that was last tried behind a name: 20,000 parts may have one name.
+    tried: HashMap<String, usize>,
+}
 
 impl UniqueNames {
     /// `wanted` with other characters replaced by `_`, and with a number behind it if it was taken.
@@ -24,13 +28,17 @@ impl UniqueNames {
                 }
             })
             .collect();
-        let mut name = plain.clone();
-        let mut number = 1;
-        while !self.0.insert(name.clone()) {
-            number += 1;
-            name = format!("{plain}_{number}");
+        if self.taken.insert(plain.clone()) {
+            return plain;
         }
-        name
+        let number = self.tried.entry(plain.clone()).or_insert(1);
+        loop {
+            *number += 1;
+            let name = format!("{plain}_{number}");
+            if self.taken.insert(name.clone()) {
+                return name;
+            }
+        }
     }
 }
 

@@ -147,6 +147,7 @@ pub(crate) fn model(meshes: &[Mesh]) -> Model {
     };
     Model {
         parts: meshes.iter().enumerate().map(part).collect(),
+        ..Model::default()
     }
 }
 

@@ -37,10 +37,6 @@ impl Numbers {
     }
 }
 
-/// Without a buffer view an accessor is all zeros, for as many elements as it likes; more than this many
-/// (400 MB of positions) are no morph target of any mesh but an attempt on the memory.
-const MOST_ZEROS: usize = 1 << 24;
-
 impl Document<'_> {
     /// The number of elements of an accessor.
     pub(super) fn count(&self, index: Index<Accessor>) -> usize {
@@ -104,6 +100,7 @@ impl Document<'_> {
         };
         let offset = accessor.byte_offset.unwrap_or_default().0;
         let run = self.run(view.value(), offset, accessor.count.0 as usize, &layout);
+        let run = run.and_then(|run| self.quota.take(accessor.count.0).map(|()| run));
         run.map_err(|problem| Failure::from(problem).at(place, index))
             .map(Some)
     }
@@ -150,14 +147,12 @@ impl Document<'_> {
                 let offset = accessor.byte_offset.unwrap_or_default().0;
                 self.values(view.value(), offset, count, layout)?
             }
-            None if count > MOST_ZEROS => {
-                let problem = AccessorProblem::TooManyZeros {
-                    found: count,
-                    limit: MOST_ZEROS,
-                };
-                return Err(problem.into());
+            // Zeros, for as many elements as it likes.
+            None => {
+                let numbers = accessor.count.0.saturating_mul(width as u64);
+                self.quota.take(numbers).map_err(Failure::Problem)?;
+                vec![0.0; count * width]
             }
-            None => vec![0.0; count * width],
         };
         if let Some(sparse) = &accessor.sparse {
             self.substitute(&mut values, sparse, count, layout)?;
@@ -177,6 +172,7 @@ impl Document<'_> {
         if count == 0 {
             return Ok(vec![]);
         }
+        self.quota.take(count as u64)?;
         let mut buffer = vec![];
         let end = run.start + run.stride * (count - 1) + run.size;
         let bytes = run.bytes.part(run.start..end, &mut buffer);

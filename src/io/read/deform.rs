@@ -6,10 +6,11 @@
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::mesh::Semantic;
+use gltf::json::{Accessor, Index};
 
 use super::accessor::Expected;
 use super::document::Document;
-use super::nodes::{self, Tree};
+use super::nodes::{self, Rounded, Tree};
 use super::note::{Note, add_note};
 use super::primitive::{Shape, Source};
 use super::{AccessorProblem, NodeProblem, ReadError};
@@ -59,13 +60,15 @@ pub(super) fn apply_morph(
     notes: &mut Vec<Note>,
 ) -> Result<(), ReadError> {
     let vertices = shape.positions.len();
-    let targets = source.primitive.targets.iter().flatten();
-    for (i, (target, &weight)) in targets.zip(weights).enumerate() {
+    let targets = source.primitive.targets.as_deref().unwrap_or_default();
+    if !targets.is_empty() && !weights.is_empty() {
         let note = Note::Morph {
             mesh: source.mesh.clone(),
             weights: weights.to_vec(),
         };
         add_note(notes, note);
+    }
+    for (i, (target, &weight)) in targets.iter().zip(weights).enumerate() {
         if weight == 0.0 {
             continue;
         }
@@ -95,18 +98,23 @@ pub(super) fn apply_morph(
     Ok(())
 }
 
-/// For each joint of the skin of `node` the transformation from the mesh as stored to the scene.
+/// The transformation of a joint from the mesh as stored to the scene, or the bottom row of the matrix that makes it
+/// none: some programs leave anything at joints that no vertex follows.
+pub(super) type Joint = Result<DAffine3, [f64; 4]>;
+
+/// The joints of the skin of `node`.
 pub(super) fn joint_transforms(
     document: &Document,
     tree: &Tree,
     node: usize,
     skin: usize,
-) -> Result<Vec<DAffine3>, ReadError> {
+    notes: &mut Vec<Note>,
+) -> Result<Vec<Joint>, ReadError> {
     let root = &document.root;
     let joints = &root.skins[skin].joints;
     let stands = joints.iter().map(|joint| tree.node_to_scene[joint.value()]);
     let Some(accessor) = root.skins[skin].inverse_bind_matrices else {
-        return Ok(stands.collect());
+        return Ok(stands.map(Ok).collect());
     };
     let place = format!("skins[{skin}].inverseBindMatrices");
     let numbers = document.numbers(accessor, &BIND_MATRIX, &place)?;
@@ -120,30 +128,52 @@ pub(super) fn joint_transforms(
         };
         return Err(nodes::error(root, node, problem));
     }
-    stands
+    let mut rounded = Rounded::default();
+    let transforms = stands
         .zip(numbers.elements())
         .map(|(joint_to_scene, bind)| {
-            let bind = DMat4::from_cols_slice(bind);
-            let row = bind.row(3).to_array();
-            if row != [0.0, 0.0, 0.0, 1.0] {
-                return Err(nodes::error(root, node, NodeProblem::Projective { row }));
-            }
-            Ok(joint_to_scene * DAffine3::from_mat4(bind))
+            let bind = rounded.affine(&DMat4::from_cols_slice(bind))?;
+            Ok(joint_to_scene * bind)
         })
-        .collect()
+        .collect();
+    rounded.note(&place, notes);
+    Ok(transforms)
 }
 
-/// Moves every vertex by the weighted mean of its joints' transformations.
+/// How far the weights of a vertex may be from 1 together without a note: those in bytes are rounded by up to a
+/// 510th each.
+const ROUNDING_OF_WEIGHTS: f64 = 0.02;
+
+/// Moves every vertex of the mesh at `node` by the weighted mean of its joints' transformations. A vertex without any
+/// weight follows the first joint that it names, as in three.js and Blender.
 pub(super) fn apply_skin(
     shape: &mut Shape,
     source: &Source,
-    joints: &[DAffine3],
+    node: usize,
+    joints: &[Joint],
+    notes: &mut Vec<Note>,
 ) -> Result<(), ReadError> {
     let mut blends = vec![Blend::NONE; shape.positions.len()];
+    let root = &source.document.root;
+    let joint =
+        |set, accessor: Index<Accessor>, vertex, joint: f64| match joints.get(joint as usize) {
+            Some(Ok(transform)) => Ok(transform),
+            Some(&Err(row)) => Err(nodes::error(root, node, NodeProblem::Projective { row })),
+            None => Err(ReadError::Accessor {
+                place: format!("{}, JOINTS_{set}", source.place),
+                accessor: accessor.value(),
+                problem: AccessorProblem::Joint {
+                    vertex,
+                    joint: joint as usize,
+                    joints: joints.len(),
+                },
+            }),
+        };
     let set_of = |set| {
         let joints = source.attribute(&Semantic::Joints(set))?;
         Some((set, joints, source.attribute(&Semantic::Weights(set))?))
     };
+    let mut firsts = vec![];
     for (set, joint_accessor, weight_accessor) in (0..).map_while(set_of) {
         let (name, vertices) = (format!("JOINTS_{set}"), blends.len());
         let followed = source.numbers(joint_accessor, &JOINT, &name, vertices)?;
@@ -151,39 +181,46 @@ pub(super) fn apply_skin(
         let weights = source.numbers(weight_accessor, &WEIGHT, &name, vertices)?;
         let pairs = followed.elements().zip(weights.elements());
         for (vertex, (followed, weights)) in pairs.enumerate() {
-            for (&joint, &weight) in followed.iter().zip(weights) {
-                let joint = joint as usize;
+            if set == 0 {
+                firsts.push((joint_accessor, followed[0]));
+            }
+            for (&number, &weight) in followed.iter().zip(weights) {
                 // Joints of no weight may be anything.
-                if weight == 0.0 {
-                    continue;
+                if weight != 0.0 {
+                    blends[vertex].add(joint(set, joint_accessor, vertex, number)?, weight);
                 }
-                let Some(joint_to_scene) = joints.get(joint) else {
-                    let joints = joints.len();
-                    return Err(ReadError::Accessor {
-                        place: format!("{}, JOINTS_{set}", source.place),
-                        accessor: joint_accessor.value(),
-                        problem: AccessorProblem::Joint {
-                            vertex,
-                            joint,
-                            joints,
-                        },
-                    });
-                };
-                blends[vertex].add(joint_to_scene, weight);
             }
         }
     }
-    let weightless = |blend: &Blend| !(blend.weight > 0.0 && blend.weight.is_finite());
-    if let Some(vertex) = blends.iter().position(weightless) {
-        let accessor = source.attribute(&Semantic::Weights(0));
-        return Err(ReadError::Accessor {
-            place: format!("{}, WEIGHTS_0", source.place),
-            accessor: accessor.map_or(0, |accessor| accessor.value()),
-            problem: AccessorProblem::Weights {
-                vertex,
-                sum: blends[vertex].weight,
-            },
-        });
+    let (mut without, mut off) = (0, 0);
+    for (vertex, blend) in blends.iter_mut().enumerate() {
+        if blend.is_none() {
+            let (accessor, number) = firsts[vertex];
+            blend.add(joint(0, accessor, vertex, number)?, 1.0);
+            without += 1;
+        }
+        if !(blend.weight > 0.0 && blend.weight.is_finite()) {
+            let accessor = source.attribute(&Semantic::Weights(0));
+            return Err(ReadError::Accessor {
+                place: format!("{}, WEIGHTS_0", source.place),
+                accessor: accessor.map_or(0, |accessor| accessor.value()),
+                problem: AccessorProblem::Weights {
+                    vertex,
+                    sum: blend.weight,
+                },
+            });
+        }
+        off += usize::from((blend.weight - 1.0).abs() > ROUNDING_OF_WEIGHTS);
+    }
+    let mesh = source.mesh.clone();
+    if without > 0 {
+        let mesh = mesh.clone();
+        let count = without;
+        add_note(notes, Note::NoWeights { mesh, count });
+    }
+    if off > 0 {
+        let count = off;
+        add_note(notes, Note::Weights { mesh, count });
     }
     pose(shape, &blends);
     Ok(())
@@ -203,6 +240,11 @@ impl Blend {
         translation: DVec3::ZERO,
         weight: 0.0,
     };
+
+    /// Whether nothing has been added.
+    fn is_none(&self) -> bool {
+        self.linear == DMat3::ZERO && self.translation == DVec3::ZERO && self.weight == 0.0
+    }
 
     fn add(&mut self, transform: &DAffine3, weight: f64) {
         self.linear += transform.matrix3 * weight;

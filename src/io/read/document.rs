@@ -6,7 +6,7 @@
 //! extensions without regard to what they mean; it refuses accessors without a buffer view, animations
 //! by extensions, and scenes without nodes.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
 use gltf::binary::{ChunkType, Error as GlbProblem};
@@ -16,7 +16,9 @@ use serde::Deserialize;
 
 use super::bytes::Bytes;
 use super::extensions;
+use super::mend::{drop_nulls, mend};
 use super::note::Note;
+use super::quota::Quota;
 use super::uri::{Folder, read_uri};
 use super::{DocumentProblem, ReadError};
 use crate::mesh::extension_names;
@@ -32,6 +34,8 @@ pub(super) struct Document<'a> {
     pub(super) animations: usize,
     /// `None` where a buffer has neither a URI nor the binary chunk.
     pub(super) buffers: Vec<Option<Bytes<'a>>>,
+    /// How much may be made of it.
+    pub(super) quota: Quota,
 }
 
 /// What surfaces look like, in the words of the file.
@@ -77,8 +81,10 @@ pub(super) fn read_document<'a>(
     check_references(&root)?;
 
     let mut buffers = vec![];
+    let mut size = json.len() as u64;
+    let mut known = HashSet::new();
     for (index, buffer) in root.buffers.iter().enumerate() {
-        buffers.push(match &buffer.uri {
+        let data = match &buffer.uri {
             Some(uri) => {
                 let place = format!("buffers[{index}].uri");
                 Some(read_uri(uri, folder, buffer.byte_length.0, &place)?)
@@ -86,14 +92,21 @@ pub(super) fn read_document<'a>(
             // Only the first buffer may be the binary chunk (glTF 2.0, section 4.4.3.3).
             None if index == 0 => binary.take(),
             None => None,
-        });
+        };
+        // What is named again is not there again.
+        if known.insert(&buffer.uri) {
+            size += data.as_ref().map_or(0, Bytes::len) as u64;
+        }
+        buffers.push(data);
     }
+    let quota = Quota::of(size);
     Ok(Document {
         root,
         placements,
         looks,
         animations,
         buffers,
+        quota,
     })
 }
 
@@ -124,20 +137,6 @@ impl Looks {
         ];
         let all = lists.into_iter().flatten();
         all.flat_map(extension_names).collect()
-    }
-}
-
-/// Takes out the properties that are null, which some programs write for those that are not there.
-fn drop_nulls(value: &mut Value) {
-    match value {
-        Value::Object(object) => object.retain(|name, value| {
-            if name != "extras" && name != "extensions" {
-                drop_nulls(value);
-            }
-            !value.is_null()
-        }),
-        Value::Array(items) => items.iter_mut().for_each(drop_nulls),
-        _ => {}
     }
 }
 
@@ -232,27 +231,6 @@ fn check_version(value: &Value) -> Result<(), ReadError> {
     }
 }
 
-/// Makes two harmless things palatable to the `gltf` crate: a scene without nodes gets an empty list of
-/// them, and attributes that glTF does not define get the underscore that marks them as custom.
-fn mend(value: &mut Value) {
-    for scene in items(value.get_mut("scenes")) {
-        if let Value::Object(scene) = scene {
-            scene.entry("nodes").or_insert_with(|| Value::Array(vec![]));
-        }
-    }
-    for mesh in items(value.get_mut("meshes")) {
-        for primitive in items(mesh.get_mut("primitives")) {
-            if let Some(Value::Object(attributes)) = primitive.get_mut("attributes") {
-                let named = std::mem::take(attributes).into_iter();
-                attributes.extend(named.map(|(name, accessor)| match is_semantic(&name) {
-                    true => (name, accessor),
-                    false => (format!("_{name}"), accessor),
-                }));
-            }
-        }
-    }
-}
-
 /// Takes out the animations, which are not read: those of `KHR_animation_pointer` have targets that the
 /// crate refuses. Says how many there were.
 fn drop_animations(value: &mut Value) -> usize {
@@ -263,19 +241,6 @@ fn drop_animations(value: &mut Value) -> usize {
         .as_ref()
         .and_then(Value::as_array)
         .map_or(0, Vec::len)
-}
-
-fn items(value: Option<&mut Value>) -> impl Iterator<Item = &mut Value> {
-    value.and_then(Value::as_array_mut).into_iter().flatten()
-}
-
-fn is_semantic(name: &str) -> bool {
-    let is_set = |(kind, set): (&str, &str)| {
-        ["TEXCOORD", "COLOR", "JOINTS", "WEIGHTS"].contains(&kind) && set.parse::<u32>().is_ok()
-    };
-    name.starts_with('_')
-        || ["POSITION", "NORMAL", "TANGENT"].contains(&name)
-        || name.split_once('_').is_some_and(is_set)
 }
 
 /// The part of the JSON at `place` as the type that glTF has there.
@@ -324,7 +289,10 @@ fn check_references(root: &Root) -> Result<(), ReadError> {
         let all_zeros = path.as_str().starts_with("accessors[")
             && path.as_str().ends_with("].bufferView")
             && error == Invalid::Missing;
-        if !all_zeros {
+        // A primitive without positions is passed over.
+        let no_positions =
+            path.as_str().ends_with(".attributes[\"POSITION\"]") && error == Invalid::Missing;
+        if !all_zeros && !no_positions {
             first.get_or_insert((path, error));
         }
     });

@@ -232,13 +232,15 @@ pub enum AccessorProblem {
         /// How many elements there are.
         count: usize,
     },
-    /// Zeros without end: a few bytes of JSON could ask for all memory.
-    #[error("has {found} elements without a bufferView, expected at most {limit}")]
-    TooManyZeros {
-        /// How many it has.
-        found: usize,
+    /// Data that is read again and again, or zeros without end: a few bytes of JSON could ask for all memory.
+    #[error(
+        "with it {found} numbers would be read, expected at most {limit} of a file of this size"
+    )]
+    TooMuch {
+        /// How many there would be.
+        found: u64,
         /// How many are read.
-        limit: usize,
+        limit: u64,
     },
     /// Positions that the file does not give.
     #[error("has neither a bufferView nor sparse values: all positions would be zero")]
@@ -318,12 +320,6 @@ pub enum NodeProblem {
     /// Its own ancestor.
     #[error("is among its own descendants, expected a tree")]
     Cycle,
-    /// A scene starts in the middle of the tree, or twice at one node.
-    #[error("is listed by scenes[{scene}] though drawn already, expected root nodes, each once")]
-    NotARoot {
-        /// Which scene.
-        scene: usize,
-    },
     /// A matrix that is not an affine transformation.
     #[error("the bottom row of the matrix is {row:?}, expected [0, 0, 0, 1]")]
     Projective {
@@ -335,6 +331,17 @@ pub enum NodeProblem {
     Rotation {
         /// The quaternion.
         rotation: [f64; 4],
+    },
+    /// Copies without end: a few bytes of JSON could ask for all memory.
+    #[error(
+        "with its copies {found} numbers would be made, expected at most {limit} of a file of this size; what is stored \
+         as a mesh of its own has no limit"
+    )]
+    TooMuch {
+        /// How many there would be.
+        found: u64,
+        /// How many are made.
+        limit: u64,
     },
     /// Numbers beyond all measure.
     #[error("the transformation overflows, expected finite numbers")]

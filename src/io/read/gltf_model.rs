@@ -3,31 +3,37 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::DAffine3;
+use glam::{DAffine3, DMat3, DVec3};
+use gltf::json::Root;
 use gltf::json::mesh::{Mode, Semantic};
-use gltf::json::{Extras, Root};
-use serde_json::{Map, Value};
 
 use super::bytes::Bytes;
 use super::deform::{apply_morph, apply_skin, joint_transforms, morph_weights};
 use super::document::{Document, read_document};
+use super::extras::{PartExtras, note_lost_extras, origin, own_generator};
 use super::instances::read_instances;
 use super::materials::Materials;
 use super::names::tell_apart;
 use super::nodes::{self, Tree, node_name, read_tree};
-use super::note::{Note, add_note, plural};
+use super::normals::replace_zero_normals;
+use super::note::{Note, add_note, plural, unique};
 use super::primitive::{Source, read_primitive};
 use super::uri::Folder;
-use super::{Findings, NodeProblem, ReadError, checked, extensions};
+use super::{AccessorProblem, Findings, NodeProblem, ReadError, checked, extensions};
 use crate::mesh::{Material, Mesh, Model, Part};
 
 /// A mesh in the coordinates of the scene.
 struct Piece {
     mesh: Mesh,
     material: Option<Arc<Material>>,
-    /// Which primitive it comes from, and which copy it is.
-    place: String,
+    /// Which primitive of its mesh it comes from.
+    primitive: usize,
+    /// The same in words.
+    place: Arc<str>,
 }
+
+/// What a part takes beside its vertices, in the measure of a [`Quota`](super::quota::Quota).
+const OF_A_PART: u64 = 64;
 
 /// Reads the bytes of a GLB or glTF file.
 ///
@@ -49,20 +55,27 @@ pub(super) fn read_gltf(bytes: Bytes, folder: &Path) -> Result<(Model, Findings)
     let tree = read_tree(&document, &mut notes)?;
     note_other_content(&document, &mut notes);
     let mut materials = Materials::new(&document, &folder);
+    let mut extras = PartExtras::new(&document.root);
     let mut parts = vec![];
     for &node in &tree.drawn {
         let pieces = read_node(&document, &tree, node, &mut materials, &mut notes)?;
+        let name = node_name(&document.root, node);
+        let letters = |piece: &Piece| {
+            let material = piece.material.as_ref().and_then(|material| material.name());
+            let names = name.len() + material.map_or(0, str::len);
+            names as u64 + extras.letters(node, piece.primitive)
+        };
+        take(&document, node, pieces.iter().map(letters).sum())?;
         let material = |piece: &Piece| piece.material.as_ref()?.name().map(str::to_owned);
         let made_of: Vec<Option<String>> = pieces.iter().map(material).collect();
-        let names = tell_apart(&node_name(&document.root, node), &made_of);
-        let extras = extras(&document.root, node);
+        let names = tell_apart(&name, &made_of);
         for (piece, name) in pieces.into_iter().zip(names) {
             let part = Part::new(name, piece.mesh, piece.material);
             let mut part = part.map_err(|problem| ReadError::Mesh {
-                place: piece.place,
+                place: piece.place.to_string(),
                 problem,
             })?;
-            part.extras.clone_from(&extras);
+            part.extras = extras.get(node, piece.primitive);
             parts.push(part);
         }
     }
@@ -74,7 +87,23 @@ pub(super) fn read_gltf(bytes: Bytes, folder: &Path) -> Result<(Model, Findings)
         folder.mention(uri);
     }
     let files = folder.into_opened();
-    Ok((checked(Model { parts })?, Findings { notes, files }))
+    let model = Model {
+        parts,
+        origin: origin(&document.root),
+    };
+    let notes = unique(notes);
+    Ok((checked(model)?, Findings { notes, files }))
+}
+
+/// Takes room for what is made of a node.
+fn take(document: &Document, node: usize, numbers: u64) -> Result<(), ReadError> {
+    document.quota.take(numbers).map_err(|problem| {
+        let problem = match problem {
+            AccessorProblem::TooMuch { found, limit } => NodeProblem::TooMuch { found, limit },
+            problem => unreachable!("a quota has no other problem than {problem}"),
+        };
+        nodes::error(&document.root, node, problem)
+    })
 }
 
 /// Notes what a file has that is no surface.
@@ -101,43 +130,7 @@ fn note_other_content(document: &Document, notes: &mut Vec<Note>) {
             add_note(notes, Note::NotCarried { what });
         }
     }
-    let empty = root.nodes.iter().filter(|node| node.mesh.is_none());
-    let count = empty.filter(|node| node.extras.is_some()).count();
-    if count > 0 {
-        let what = format!("extras of {} without a mesh", plural(count, "node"));
-        add_note(notes, Note::NotCarried { what });
-    }
-}
-
-/// What wrote the file, if that is this program.
-fn own_generator(root: &Root) -> Option<&str> {
-    let generator = root.asset.generator.as_deref()?;
-    let ours = generator.starts_with(concat!(env!("CARGO_PKG_NAME"), " "));
-    ours.then_some(generator)
-}
-
-/// What the file says of a node and its mesh beyond glTF.
-fn extras(root: &Root, node: usize) -> Option<Arc<Value>> {
-    let node = &root.nodes[node];
-    let value = |extras: &Extras| -> Option<Value> {
-        let text = extras.as_ref()?.get();
-        Some(serde_json::from_str(text).expect("it was read as a part of the file"))
-    };
-    let of_node = value(&node.extras);
-    // What this program writes there it makes anew; what it had from elsewhere goes on.
-    if own_generator(root).is_some() {
-        return of_node?.get("source").cloned().map(Arc::new);
-    }
-    let of_mesh = node
-        .mesh
-        .and_then(|mesh| value(&root.meshes[mesh.value()].extras));
-    let both = [("node", of_node), ("mesh", of_mesh)].into_iter();
-    let both: Map<_, _> = both
-        .filter_map(|(name, extras)| Some((name.to_owned(), extras?)))
-        // Some programs write what says nothing.
-        .filter(|(_, extras)| *extras != serde_json::json!({}))
-        .collect();
-    (!both.is_empty()).then(|| Arc::new(Value::Object(both)))
+    note_lost_extras(root, notes);
 }
 
 /// The meshes that one node draws, without its children.
@@ -155,7 +148,7 @@ fn read_node(
     let weights = morph_weights(document, node)?;
     let skin = root.nodes[node].skin.map(|skin| skin.value());
     let joints = match skin {
-        Some(skin) => Some(joint_transforms(document, tree, node, skin)?),
+        Some(skin) => Some(joint_transforms(document, tree, node, skin, notes)?),
         None => None,
     };
     // The joints alone place a mesh with a skin (glTF 2.0, section 3.7.3.3).
@@ -183,7 +176,10 @@ fn read_node(
             },
             mesh: named.map_or(format!("meshes[{mesh}]"), |name| format!("mesh {name:?}")),
         };
-        if let (Some(skin), None) = (skin, source.attribute(&Semantic::Joints(0))) {
+        let followed = [Semantic::Joints(0), Semantic::Weights(0)];
+        let follows = followed.iter().all(|name| source.attribute(name).is_some());
+        let has_shape = source.attribute(&Semantic::Positions).is_some();
+        if let (Some(skin), false, true) = (skin, follows, has_shape) {
             return Err(nodes::error(root, node, NodeProblem::NoJoints { skin }));
         }
         let mut deform_notes = vec![];
@@ -194,9 +190,9 @@ fn read_node(
                 let Some(joints) = &joints else {
                     return Ok(());
                 };
-                let node = node_name(root, node);
-                add_note(&mut deform_notes, Note::Skin { node });
-                apply_skin(shape, &source, joints)
+                let name = node_name(root, node);
+                add_note(&mut deform_notes, Note::Skin { node: name });
+                apply_skin(shape, &source, node, joints, &mut deform_notes)
             },
             notes,
         )?;
@@ -211,16 +207,33 @@ fn read_node(
         let material = material
             .map(|index| materials.material(index, &source.mesh, sets, notes))
             .transpose()?;
+        let of_each = OF_A_PART + numbers_of_a_copy(&mesh);
+        take(
+            document,
+            node,
+            of_each.saturating_mul(transforms.len() as u64),
+        )?;
+        let place: Arc<str> = source.place.as_str().into();
         let meshes = std::iter::repeat_n(mesh, transforms.len());
         for (mesh, transform) in meshes.zip(&transforms) {
-            let mesh = mesh.transformed(transform);
+            let mut mesh = mesh.transformed(transform);
             if !mesh.is_finite() {
                 return Err(nodes::error(root, node, NodeProblem::NotFinite));
+            }
+            if transform.matrix3.determinant() == 0.0 {
+                // Normals in the plane that it is flat in have become none.
+                let (mended, count) = replace_zero_normals(mesh);
+                mesh = mended;
+                if count > 0 {
+                    let mesh = source.mesh.clone();
+                    add_note(notes, Note::Normals { mesh, count });
+                }
             }
             pieces.push(Piece {
                 mesh,
                 material: material.clone(),
-                place: source.place.clone(),
+                primitive: p,
+                place: place.clone(),
             });
         }
     }
@@ -234,7 +247,17 @@ fn read_node(
     Ok(pieces)
 }
 
-/// Where a node draws its mesh: once, unless it is instanced; not at all where it has no volume left.
+/// How many vectors a copy of a mesh has of its own. One without normals gets those of its triangles.
+fn numbers_of_a_copy(mesh: &Mesh) -> u64 {
+    let vertices = mesh.positions().len() as u64;
+    match (mesh.normals(), mesh.tangents()) {
+        (None, _) => 6 * mesh.triangles().len() as u64,
+        (Some(_), None) => 2 * vertices,
+        (Some(_), Some(_)) => 3 * vertices,
+    }
+}
+
+/// Where a node draws its mesh: once, unless it is instanced; not at all where it is scaled to a line or a point.
 fn copies(
     document: &Document,
     tree: &Tree,
@@ -248,7 +271,7 @@ fn copies(
         if !transform.is_finite() {
             return Err(nodes::error(root, node, NodeProblem::NotFinite));
         }
-        if transform.matrix3.determinant() == 0.0 {
+        if !is_surface_left(&transform.matrix3) {
             let node = node_name(root, node);
             add_note(notes, Note::Flat { node });
         } else {
@@ -256,6 +279,27 @@ fn copies(
         }
     }
     Ok(transforms)
+}
+
+/// Whether something is left of surfaces; of a body scaled flat its two sides are.
+fn is_surface_left(linear: &DMat3) -> bool {
+    let largest = linear.to_cols_array().into_iter().map(f64::abs);
+    let largest = largest.fold(0.0, f64::max);
+    if largest == 0.0 {
+        return false;
+    }
+    // Relative to the largest number, because products of small ones vanish.
+    let DMat3 {
+        x_axis,
+        y_axis,
+        z_axis,
+    } = *linear * largest.recip();
+    let across = [
+        x_axis.cross(y_axis),
+        y_axis.cross(z_axis),
+        z_axis.cross(x_axis),
+    ];
+    across.into_iter().any(|normal| normal != DVec3::ZERO)
 }
 
 fn is_surface(mode: Mode) -> bool {
@@ -274,6 +318,7 @@ fn content(root: &Root, notes: &[Note]) -> String {
             note,
             Note::PointsAndLines { .. }
                 | Note::Empty { .. }
+                | Note::NoPositions { .. }
                 | Note::Hidden { .. }
                 | Note::Flat { .. }
         )

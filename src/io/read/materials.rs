@@ -3,7 +3,7 @@
 //! Everything that a material says travels, in the words of the file; images are kept byte for byte and
 //! never decoded. One that cannot be had costs the texture, not the file.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use serde_json::Value;
@@ -26,6 +26,8 @@ pub(super) struct Materials<'a> {
     /// `None` for those that cannot be had.
     textures: HashMap<usize, Option<Arc<Texture>>>,
     images: HashMap<usize, Option<Arc<Image>>>,
+    /// Where images are whose bytes have been read: views and URIs.
+    read: HashSet<(Option<u64>, Option<String>)>,
 }
 
 impl<'a> Materials<'a> {
@@ -38,6 +40,7 @@ impl<'a> Materials<'a> {
             fitted: Fitted::default(),
             textures: HashMap::new(),
             images: HashMap::new(),
+            read: HashSet::new(),
         }
     }
 
@@ -169,14 +172,15 @@ impl<'a> Materials<'a> {
     }
 
     /// An image, or why it cannot be had.
-    fn read_image(&self, index: usize) -> Result<Image, String> {
+    fn read_image(&mut self, index: usize) -> Result<Image, String> {
         let source = self.document.looks.images.get(index);
         let mut properties = source.ok_or("there is no such image")?.clone();
         let object = properties.as_object_mut().ok_or("it is not an object")?;
         let uri = object.shift_remove("uri");
         let view = object.shift_remove("bufferView");
         let uri = uri.as_ref().and_then(Value::as_str);
-        let bytes = match (uri, view.and_then(|view| view.as_u64())) {
+        let view = view.and_then(|view| view.as_u64());
+        let bytes = match (uri, view) {
             (Some(uri), _) => {
                 let place = format!("images[{index}].uri");
                 let bytes = read_uri(uri, self.folder, u64::MAX, &place);
@@ -190,6 +194,12 @@ impl<'a> Materials<'a> {
             }
             (None, None) => return Err("it has neither a uri nor a bufferView".to_owned()),
         };
+        let file = uri.filter(|uri| !uri.starts_with("data:"));
+        let place = (view, file.map(str::to_owned));
+        if place != (None, None) && !self.read.insert(place) {
+            let more = self.document.quota.take(bytes.len() as u64);
+            more.map_err(|problem| format!("its bytes belong to another one too; {problem}"))?;
+        }
         let image = Image::from_properties(properties, bytes);
         image.ok_or_else(|| "of a type that is not known".to_owned())
     }

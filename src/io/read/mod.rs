@@ -9,9 +9,11 @@ mod deform;
 mod document;
 mod error;
 mod extensions;
+mod extras;
 mod gltf_model;
 mod instances;
 mod materials;
+mod mend;
 mod mtl;
 mod mtl_map;
 mod names;
@@ -22,6 +24,7 @@ mod obj;
 mod obj_lines;
 mod polygon;
 mod primitive;
+mod quota;
 mod run;
 mod uri;
 
@@ -37,6 +40,7 @@ use crate::mesh::Model;
 use bytes::Bytes;
 use document::is_glb;
 use gltf_model::read_gltf;
+use note::unique;
 use obj::read_obj_bytes;
 
 /// What there is to know about a model beside the model.
@@ -102,5 +106,6 @@ pub fn read_model(path: &Path) -> Result<(Model, Findings), ReadError> {
         read_obj_bytes(&bytes.into_vec()?, folder, &stem.to_string_lossy())?
     };
     findings.files.insert(0, path.to_owned());
+    findings.notes = unique(findings.notes);
     Ok((model, findings))
 }

@@ -1,5 +1,6 @@
 //! What was found in a file and is not carried over as it stands.
 
+use std::collections::HashSet;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -36,7 +37,25 @@ pub enum Note {
         /// Its name.
         node: String,
     },
-    /// A node scaled to nothing.
+    /// A scene that lists nodes which have parents.
+    InnerRoots {
+        /// Which scene.
+        scene: usize,
+        /// Name of the first of those nodes.
+        node: String,
+        /// How many there are.
+        count: usize,
+    },
+    /// Matrices with rounding where an affine transformation has none.
+    BottomRow {
+        /// Where they are.
+        place: String,
+        /// How many.
+        count: usize,
+        /// How far off their bottom rows are at most.
+        largest: f64,
+    },
+    /// A node scaled to a line or a point.
     Flat {
         /// Its name.
         node: String,
@@ -46,6 +65,20 @@ pub enum Note {
         /// Name of the node or the file that has them.
         place: String,
         /// How many primitives, or lines of the file.
+        count: usize,
+    },
+    /// A primitive without positions.
+    NoPositions {
+        /// Which one.
+        place: String,
+    },
+    /// Indices that glTF reserves for a new strip, taken for the vertex that they name.
+    LastIndex {
+        /// Which primitive.
+        place: String,
+        /// The index.
+        index: u32,
+        /// How often it occurs.
         count: usize,
     },
     /// A primitive without a triangle.
@@ -92,6 +125,20 @@ pub enum Note {
     Skin {
         /// Name of the node.
         node: String,
+    },
+    /// Vertices that follow joints by no weight.
+    NoWeights {
+        /// Which mesh.
+        mesh: String,
+        /// How many vertices.
+        count: usize,
+    },
+    /// Vertices whose weights are not 1 together.
+    Weights {
+        /// Which mesh.
+        mesh: String,
+        /// How many vertices.
+        count: usize,
     },
     /// Normals without a direction.
     Normals {
@@ -179,10 +226,46 @@ impl fmt::Display for Note {
             Self::NotCarried { what } => write!(f, "{what}: not carried over"),
             Self::Extension { name } => write!(f, "extension {name}: not carried over"),
             Self::Hidden { node } => write!(f, "node {node:?} is not visible: skipped"),
-            Self::Flat { node } => write!(f, "node {node:?} is scaled to no volume: skipped"),
+            Self::InnerRoots { scene, node, count } => {
+                let those = plural(*count, "node");
+                write!(
+                    f,
+                    "scenes[{scene}] lists {those} with a parent, the first {node:?}: drawn once, where the parent \
+                     places it"
+                )
+            }
+            Self::BottomRow {
+                place,
+                count,
+                largest,
+            } => {
+                let those = match count {
+                    1 => "1 matrix".to_owned(),
+                    _ => format!("{count} matrices"),
+                };
+                write!(
+                    f,
+                    "{place}: {those} taken as affine, whose bottom row is [0, 0, 0, 1] but for {largest:.0e}"
+                )
+            }
+            Self::Flat { node } => {
+                write!(f, "node {node:?} is scaled to a line or a point: skipped")
+            }
             Self::PointsAndLines { place, count } => {
                 let those = plural(*count, "primitive");
                 write!(f, "{place}: {those} of points or lines skipped")
+            }
+            Self::NoPositions { place } => write!(f, "{place}: has no POSITION, skipped"),
+            Self::LastIndex {
+                place,
+                index,
+                count,
+            } => {
+                let times = plural(*count, "time");
+                write!(
+                    f,
+                    "{place}, indices: {index}, which glTF reserves, taken {times} for the vertex of that number"
+                )
             }
             Self::Empty { place } => write!(f, "{place}: has no triangles, skipped"),
             Self::EmptyFaces { count } => {
@@ -212,6 +295,20 @@ impl fmt::Display for Note {
                 write!(f, "{mesh}: morph targets applied with weights {weights:?}")
             }
             Self::Skin { node } => write!(f, "node {node:?}: skin applied in its default pose"),
+            Self::NoWeights { mesh, count } => {
+                let those = plural(*count, "vertex");
+                write!(
+                    f,
+                    "{mesh}: {those} without weights taken to follow the first joint that each names"
+                )
+            }
+            Self::Weights { mesh, count } => {
+                let those = plural(*count, "vertex");
+                write!(
+                    f,
+                    "{mesh}: weights of {those} divided by their sum, expected 1"
+                )
+            }
             Self::Normals { mesh, count } => {
                 let those = plural(*count, "zero normal");
                 write!(
@@ -273,11 +370,21 @@ impl fmt::Display for Note {
     }
 }
 
-/// Adds a note unless it has been made already: one mesh may be drawn many times.
+/// Among so many of the last notes [`add_note`] looks for the one to be added.
+const RECENT: usize = 64;
+
+/// Adds a note unless it has been made lately: one mesh may be drawn many times. [`unique`] takes out the rest.
 pub(super) fn add_note(notes: &mut Vec<Note>, note: Note) {
-    if !notes.contains(&note) {
+    if !notes.iter().rev().take(RECENT).any(|known| *known == note) {
         notes.push(note);
     }
+}
+
+/// Each note once, in the order in which they were made.
+pub(super) fn unique(mut notes: Vec<Note>) -> Vec<Note> {
+    let mut known = HashSet::new();
+    notes.retain(|note| known.insert(format!("{note:?}")));
+    notes
 }
 
 /// Such as "1 camera", "2 cameras".
@@ -309,5 +416,19 @@ mod tests {
             notes[0].to_string(),
             "node \"grid\": 2 primitives of points or lines skipped"
         );
+    }
+
+    /// Each note is compared with a few others alone, or 20,000 hidden nodes would take minutes.
+    #[test]
+    fn a_note_made_long_ago_is_not_made_again() {
+        let hidden = |number: usize| Note::Hidden {
+            node: number.to_string(),
+        };
+        let mut notes = vec![];
+        for number in (0..1000).chain(0..1000) {
+            add_note(&mut notes, hidden(number));
+        }
+        let all: Vec<Note> = (0..1000).map(hidden).collect();
+        assert_eq!(unique(notes), all);
     }
 }

@@ -1,7 +1,7 @@
 //! An OBJ file as a model: every group with a material becomes a part.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -87,7 +87,11 @@ pub(super) fn read_obj_bytes(
         return Err(ReadError::NoTriangles { instead });
     }
     let files = folder.into_opened();
-    Ok((checked(Model { parts })?, Findings { notes, files }))
+    let model = Model {
+        parts,
+        ..Model::default()
+    };
+    Ok((checked(model)?, Findings { notes, files }))
 }
 
 fn note_other_content(prepared: &Prepared, notes: &mut Vec<Note>) {
@@ -151,9 +155,9 @@ impl Libraries<'_> {
 }
 
 fn note_unknown_materials(prepared: &Prepared, materials: &[Arc<Material>], notes: &mut Vec<Note>) {
+    let known: HashSet<&str> = materials.iter().filter_map(|m| m.name()).collect();
     for name in &prepared.materials {
-        let is_it = |material: &Arc<Material>| material.name() == Some(name);
-        if !materials.iter().any(is_it) {
+        if !known.contains(name.as_str()) {
             let name = name.clone();
             add_note(notes, Note::UnknownMaterial { name });
         }

@@ -109,6 +109,11 @@ pub(super) fn read_primitive(
     deform: impl FnOnce(&mut Shape) -> Result<(), ReadError>,
     notes: &mut Vec<Note>,
 ) -> Result<Option<Mesh>, ReadError> {
+    if source.attribute(&Semantic::Positions).is_none() {
+        let place = source.place.clone();
+        add_note(notes, Note::NoPositions { place });
+        return Ok(None);
+    }
     // In this order, because a count is only proven by the bytes behind it.
     let mut shape = source.shape()?;
     let mut triangles = source.triangles(shape.positions.len(), notes)?;
@@ -321,7 +326,7 @@ impl Source<'_> {
                     let are_sound = true;
                     return Ok(Triangles { corners, are_sound });
                 }
-                self.indices(index)?
+                self.indices(index, vertices, notes)?
             }
             None => (0..u32::try_from(vertices).unwrap_or(u32::MAX)).collect(),
         };
@@ -384,7 +389,14 @@ impl Source<'_> {
         Ok(sound.get().then_some(corners))
     }
 
-    fn indices(&self, index: Index<Accessor>) -> Result<Vec<u32>, ReadError> {
+    /// The indices, one by one. The largest number of their type begins a new strip in some programs and is reserved in
+    /// glTF; where there is a vertex of that number, its writer meant it.
+    fn indices(
+        &self,
+        index: Index<Accessor>,
+        vertices: usize,
+        notes: &mut Vec<Note>,
+    ) -> Result<Vec<u32>, ReadError> {
         let place = format!("{}, indices", self.place);
         let numbers = self.document.numbers(index, &INDEX, &place)?;
         let component = self.document.root.accessors[index.value()].component_type;
@@ -394,17 +406,26 @@ impl Source<'_> {
             _ => u32::MAX,
         };
         let indices: Vec<u32> = numbers.values.iter().map(|&i| i as u32).collect();
-        match indices.iter().position(|&i| i == restart) {
-            Some(position) => Err(ReadError::Accessor {
+        let Some(position) = indices.iter().position(|&i| i == restart) else {
+            return Ok(indices);
+        };
+        if vertices as u64 <= restart.into() {
+            return Err(ReadError::Accessor {
                 place,
                 accessor: index.value(),
                 problem: AccessorProblem::Restart {
                     position,
                     index: restart,
                 },
-            }),
-            None => Ok(indices),
+            });
         }
+        let note = Note::LastIndex {
+            place: self.place.clone(),
+            index: restart,
+            count: indices.iter().filter(|&&i| i == restart).count(),
+        };
+        add_note(notes, note);
+        Ok(indices)
     }
 
     /// What the largest integer of a colour has to be divided by: glTF wants colours normalized, so

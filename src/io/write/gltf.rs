@@ -249,6 +249,9 @@ impl<'a> GltfFile<'a> {
             "scene": 0,
             "scenes": [scene],
         });
+        if let Some(copyright) = self.scene.copyright() {
+            others["asset"]["copyright"] = copyright.into();
+        }
         self.materials.write_into(&mut others, &views);
         self.document.finish(&others)
     }

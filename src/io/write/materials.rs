@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use crate::mesh::{Image, Material, Texture, map_sources, position, retain_textures};
+use crate::mesh::{Image, Material, Texture, map_sources, retain_textures};
 
 /// The materials of a file in the making, with all that belongs to them.
 #[derive(Default)]
@@ -14,8 +14,8 @@ pub(super) struct Materials {
     added: HashMap<usize, (Arc<Material>, usize)>,
     for_those_without: Option<Arc<Material>>,
     materials: Vec<Value>,
-    textures: Vec<Arc<Texture>>,
-    images: Vec<Arc<Image>>,
+    textures: Once<Texture>,
+    images: Once<Image>,
     extensions_used: BTreeSet<String>,
     extensions_required: BTreeSet<String>,
 }
@@ -36,11 +36,11 @@ impl Materials {
         let of_material = material.textures();
         retain_textures(&mut properties, |_, info| {
             let slot = info["index"].as_u64().unwrap_or_default() as usize;
-            info["index"] = position(&mut self.textures, &of_material[slot]).into();
+            info["index"] = self.textures.position(&of_material[slot]).into();
             true
         });
         for image in of_material.iter().flat_map(|texture| texture.images()) {
-            position(&mut self.images, image);
+            self.images.position(image);
         }
         self.extensions_used.extend(material.extensions());
         let required = material.required_extensions();
@@ -53,30 +53,30 @@ impl Materials {
 
     /// The images of all materials, in their order in the file.
     pub(super) fn images(&self) -> &[Arc<Image>] {
-        &self.images
+        &self.images.list
     }
 
     /// Writes everything into the root of a file in which the images are behind these buffer views.
     pub(super) fn write_into(mut self, root: &mut Value, views: &[usize]) {
         let mut samplers: Vec<&Value> = vec![];
+        let mut known_samplers = HashMap::new();
         let mut textures = vec![];
-        for texture in &self.textures {
+        for texture in &self.textures.list {
             let mut properties = texture.properties().clone();
             map_sources(&mut properties, |_, source| {
                 let image = &texture.images()[source as usize];
-                Some(position(&mut self.images, image))
+                Some(self.images.position(image))
             });
             if let Some(sampler) = texture.sampler() {
-                let known = samplers.iter().position(|&known| known == sampler);
-                let place = known.unwrap_or_else(|| {
+                let place = *known_samplers.entry(sampler).or_insert(samplers.len());
+                if place == samplers.len() {
                     samplers.push(sampler);
-                    samplers.len() - 1
-                });
+                }
                 properties["sampler"] = place.into();
             }
             textures.push(properties);
         }
-        let images = self.images.iter().zip(views).map(|(image, view)| {
+        let images = self.images.list.iter().zip(views).map(|(image, view)| {
             let mut properties = image.properties().clone();
             properties["bufferView"] = json!(view);
             properties
@@ -94,6 +94,33 @@ impl Materials {
                 root[key] = list;
             }
         }
+    }
+}
+
+/// Shared things, each once, in the order in which they came.
+struct Once<T> {
+    list: Vec<Arc<T>>,
+    /// By address; what is listed stays at its own.
+    places: HashMap<usize, usize>,
+}
+
+impl<T> Default for Once<T> {
+    fn default() -> Self {
+        Self {
+            list: vec![],
+            places: HashMap::new(),
+        }
+    }
+}
+
+impl<T> Once<T> {
+    /// The place of something in the list, to which it is added where it is not there yet.
+    fn position(&mut self, item: &Arc<T>) -> usize {
+        let place = self.places.entry(Arc::as_ptr(item) as usize);
+        *place.or_insert_with(|| {
+            self.list.push(item.clone());
+            self.list.len() - 1
+        })
     }
 }
 

@@ -45,10 +45,17 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
 
     write!(
         writer,
-        "ply\nformat binary_little_endian 1.0\ncomment {}\nelement vertex {vertices}\n\
+        "ply\nformat binary_little_endian 1.0\ncomment {}\n",
+        export.scene.generator
+    )?;
+    for line in comment_lines(&export.scene.copyright().unwrap_or_default()) {
+        writeln!(writer, "comment copyright {line}")?;
+    }
+    write!(
+        writer,
+        "element vertex {vertices}\n\
          property double x\nproperty double y\nproperty double z\n\
          property float nx\nproperty float ny\nproperty float nz\n",
-        export.scene.generator
     )?;
     for scalar in scalars.first().into_iter().flatten() {
         writeln!(writer, "property float {}", property(scalar))?;
@@ -78,6 +85,14 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
         first += layer.mesh.positions().len() as u32;
     }
     Ok(())
+}
+
+/// A text in lines that a header may have: some programs read no more than some hundred bytes of one.
+fn comment_lines(text: &str) -> Vec<String> {
+    const LONGEST: usize = 60;
+    let plain = |letter: char| if letter.is_control() { ' ' } else { letter };
+    let letters: Vec<char> = text.chars().map(plain).collect();
+    letters.chunks(LONGEST).map(String::from_iter).collect()
 }
 
 /// MeshLab shows `quality`, and nothing that is called anything else.

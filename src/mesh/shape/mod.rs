@@ -243,7 +243,10 @@ impl Shape {
         };
         let material = checker::material(appearance, checker_cells);
         let part = Part::new("", surface.into_mesh()?, Some(Arc::new(material)))?;
-        Ok(Model { parts: vec![part] })
+        Ok(Model {
+            parts: vec![part],
+            origin: None,
+        })
     }
 
     /// All lengths of the shape and the gaps that they leave.

@@ -1,0 +1,42 @@
+//! How much may be made of a file in all: copies, zeros without data and data that is named again and again would
+//! else make gigabytes of a kilobyte.
+
+use std::cell::Cell;
+
+use super::AccessorProblem;
+
+/// So much may be made of any file, however small: vertices with normals of 400 MB.
+const LEAST: u64 = 1 << 24;
+/// So much of each byte of a larger one. What is stored once takes at most one for each byte, and meshes whose hundred
+/// materials share all vertices about this.
+const FOR_EACH_BYTE: u64 = 16;
+
+/// Counts vectors, indices, zeros and letters: all that memory is taken for.
+pub(super) struct Quota {
+    limit: u64,
+    taken: Cell<u64>,
+}
+
+impl Quota {
+    /// That of a file with so many bytes, those of its buffers among them.
+    pub(super) fn of(bytes: u64) -> Self {
+        Self {
+            limit: LEAST.max(bytes.saturating_mul(FOR_EACH_BYTE)),
+            taken: Cell::new(0),
+        }
+    }
+
+    /// Takes so much, before memory is taken for it.
+    ///
+    /// # Errors
+    ///
+    /// More than is left.
+    pub(super) fn take(&self, more: u64) -> Result<(), AccessorProblem> {
+        let (found, limit) = (self.taken.get().saturating_add(more), self.limit);
+        if found > limit {
+            return Err(AccessorProblem::TooMuch { found, limit });
+        }
+        self.taken.set(found);
+        Ok(())
+    }
+}
