@@ -58,4 +58,14 @@ mod tests {
             ["a_b", "a_b_2", "a_b_2_2", "a_b_3", "Gro_es_Rad", "-"]
         );
     }
+
+    /// Each name knows how far its numbers are used up, or this would take hours.
+    #[test]
+    fn many_things_of_one_name_take_no_longer_than_others() {
+        let mut names = UniqueNames::default();
+        names.unique("bolt_3");
+        let made: Vec<String> = (0..300_000).map(|_| names.unique("bolt")).collect();
+        assert_eq!(made[..3], ["bolt", "bolt_2", "bolt_4"]);
+        assert_eq!(made[299_999], "bolt_300001");
+    }
 }

@@ -7,6 +7,7 @@
 )]
 
 pub(crate) mod command;
+pub(crate) mod made_glb;
 pub(crate) mod oracle;
 pub(crate) mod passing;
 pub(crate) mod refining;

@@ -150,7 +150,7 @@ impl Document<'_> {
             // Zeros, for as many elements as it likes.
             None => {
                 let numbers = accessor.count.0.saturating_mul(width as u64);
-                self.quota.take(numbers).map_err(Failure::Problem)?;
+                self.zeros.take(numbers)?;
                 vec![0.0; count * width]
             }
         };

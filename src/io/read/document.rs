@@ -36,6 +36,8 @@ pub(super) struct Document<'a> {
     pub(super) buffers: Vec<Option<Bytes<'a>>>,
     /// How much may be made of it.
     pub(super) quota: Quota,
+    /// How many zeros may be made where it has no data.
+    pub(super) zeros: Quota,
 }
 
 /// What surfaces look like, in the words of the file.
@@ -99,14 +101,14 @@ pub(super) fn read_document<'a>(
         }
         buffers.push(data);
     }
-    let quota = Quota::of(size);
     Ok(Document {
         root,
         placements,
         looks,
         animations,
         buffers,
-        quota,
+        quota: Quota::of(size),
+        zeros: Quota::of_zeros(size),
     })
 }
 
