@@ -30,23 +30,23 @@ mod tessellate;
 pub use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4, Vec2, Vec4};
 
 pub use io::{
-    AccessorProblem, DocumentProblem, Export, FileFindings, Findings, Format, GltfFile, GltfOutput,
-    LoadError, NodeProblem, Note, ObjProblem, Playback, ReadError, Report, StageTime, Target,
-    UriProblem, WriteError, abandon_writes, destination, load_models, read_gltf_bytes, read_model,
-    write_glb, write_gltf, write_ply, write_whole, write_whole_target,
+    Access, AccessorProblem, DocumentProblem, Export, FileFindings, Findings, Format, GltfFile,
+    GltfOutput, LoadError, NodeProblem, Note, ObjProblem, Playback, ReadError, Report, StageTime,
+    Target, UriProblem, WriteError, abandon_writes, destination, load_models, read_gltf_bytes,
+    read_model, read_whole, write_glb, write_gltf, write_ply, write_whole, write_whole_target,
 };
 pub use light_cone::{PhotosurfaceMap, View};
 pub use mesh::{
     AlphaMode, Appearance, Cells, Color, Cone, Count, Cuboid, Cylinder, Grid, Image, Lattice,
-    Length, Material, MaterialError, Mesh, MeshError, Model, Part, Rod, Shape, ShapeError, Sphere,
-    Texture, Torus, Wrap,
+    Length, Material, MaterialError, Mesh, MeshError, Model, Part, PictureError, Rod, Shape,
+    ShapeError, Sphere, Texture, Torus, Wrap,
 };
 pub use photosurface::{
     Facts, Photosurface, Prediction, SceneFacts, Stage, VertexData, Wanted, step_label,
 };
 pub use render::{
-    Camera, CameraError, MAX_PICTURE_SIDE, Picture, PictureOptions, PictureSize, Projection,
-    RenderError, Scenery, Strokes, Viewpoint, lettering, lettering_width,
+    Camera, CameraError, MAX_PICTURE_SIDE, MissingTexture, Picture, PictureOptions, PictureSize,
+    Projection, Scenery, Strokes, Textures, Viewpoint, lettering, lettering_width,
 };
 pub use scene::{
     Attribute, Attributes, BUILT_IN_SCENES, BuiltInScene, InvalidScene, MarkerRadius,

@@ -132,8 +132,14 @@ fn what_is_no_number_is_told_with_what_was_expected() {
         ),
         ("export --gamma inf", ["--gamma", "inf is not finite"]),
         // Negative numbers of every form are values, no flags; a flag in the place of a value is none.
-        ("export --beta -1e-3", ["--beta", "-0.001, expected 0 <= beta"]),
-        ("export --marker -5E-1", ["--marker is -0.5", "expected a length"]),
+        (
+            "export --beta -1e-3",
+            ["--beta", "-0.001, expected 0 <= beta"],
+        ),
+        (
+            "export --marker -5E-1",
+            ["--marker is -0.5", "expected a length"],
+        ),
         ("render --fov -1e-3", ["--fov", "-0.001"]),
         ("export --time -q", ["--time", "\"-q\" is no number"]),
         ("export --marker x", ["--marker", "\"x\" is no number"]),

@@ -40,9 +40,7 @@ fn by_rays(stage: &Stage, camera: &Camera) -> Picture {
     let mut scenery = Scenery::new();
     for (object, parts) in stage.objects() {
         for (_, part) in parts {
-            scenery
-                .add_at_rest(object, part)
-                .expect("pictures that can be drawn");
+            scenery.add_at_rest(object, part);
         }
     }
     take(stage, &scenery, camera)
@@ -59,9 +57,7 @@ fn by_meshes(stage: &Stage, camera: &Camera, wanted: Wanted) -> (Picture, f64) {
             .clone()
             .find(|object| object.name == surface.facts.object)
             .expect("photosurfaces are of objects");
-        scenery
-            .add_photosurface(object, &surface.mesh, surface.material.as_ref())
-            .expect("pictures that can be drawn");
+        scenery.add_photosurface(object, &surface.mesh, surface.material.as_ref());
         // In degrees, as the tolerance is.
         angle = angle.max(surface.facts.certificate.total.to_radians());
     }
@@ -69,6 +65,7 @@ fn by_meshes(stage: &Stage, camera: &Camera, wanted: Wanted) -> (Picture, f64) {
 }
 
 fn take(stage: &Stage, scenery: &Scenery, camera: &Camera) -> Picture {
+    assert!(scenery.textures().missing().is_empty());
     let observer = stage.scene().observer().world_line();
     let viewpoint = Viewpoint::Observer(&observer, stage.scene().steps()[0]);
     scenery.picture(camera, viewpoint, BARE, &|| ())

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, anyhow, ensure};
 use clap::Args;
-use photosurface::{DVec3, MarkerRadius, Observer, Scene, Velocity, even_steps};
+use photosurface::{Access, DVec3, MarkerRadius, Observer, Scene, Velocity, even_steps};
 
 /// What to look at.
 #[derive(Debug, Args)]
@@ -17,6 +17,24 @@ pub(super) struct InputArgs {
     /// Take a built-in scene; `photosurface example` lists them
     #[arg(long, value_name = "NAME", conflicts_with = "input")]
     pub(super) example: Option<String>,
+    /// Read what SCENE or MESH names in DIR and below, too; may be given several times. Without it, files that another
+    /// one names are read in the folder of SCENE or MESH, in this directory, and below these, links followed
+    #[arg(long, value_name = "DIR", value_parser = folder, help_heading = "Reading")]
+    allow_read: Vec<PathBuf>,
+    /// Pixels that all textures may have together when they are decoded, at four bytes each; what is beyond is left out
+    /// with a note
+    #[arg(long, value_name = "N", default_value_t = Access::default().max_texture_pixels, value_parser = whole_number, help_heading = "Reading")]
+    max_texture_pixels: u64,
+}
+
+impl InputArgs {
+    /// What may be read of files that other files name.
+    pub(super) fn access(&self) -> Access {
+        Access {
+            folders: self.allow_read.clone(),
+            max_texture_pixels: self.max_texture_pixels,
+        }
+    }
 }
 
 /// Flags that override what the scene says of the observer.
@@ -114,6 +132,12 @@ impl ObserverArgs {
         };
         Velocity::from_rapidity(rapidity, direction).context(flag)
     }
+}
+
+fn folder(text: &str) -> anyhow::Result<PathBuf> {
+    let folder = PathBuf::from(text);
+    ensure!(folder.is_dir(), "no such folder");
+    Ok(folder)
 }
 
 /// `X,Y,Z`

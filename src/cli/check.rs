@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use anyhow::Context;
 use photosurface::{Format, Prediction, Stage};
 
 use super::Status;
@@ -72,9 +73,10 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
             ));
         }
         if let Err(error) = format.least_size(&stage, stage.scene().steps().len()) {
-            verbosity.note(error);
+            verbosity.note(format_args!("{}: {error}", input.place));
         }
-        format.check_range(&stage)?;
+        let range = format.check_range(&stage);
+        range.with_context(|| input.place.clone())?;
         let wanted = args.accuracy.wanted_in(format, stage.scene());
         let (stage, predictions) = args.accuracy.within_budget(stage, wanted, verbosity);
         print(|out| table(&stage, &predictions, out))?;

@@ -14,7 +14,7 @@ use super::accuracy::tolerance;
 use super::args::{Given, InputArgs, ObserverArgs, count, number, refuse, vector, whole_number};
 use super::camera::{OBSERVER_FOV, fitting_fov, middle_of_sky, rough_places, samples, size};
 use super::cost_tables::{csv_of_meshes, csv_of_rays, tables_of};
-use super::input::Input;
+use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, grouped, print};
 use super::output::{check_destinations, is_stdout, progress_bar, with_suffix};
 
@@ -172,8 +172,11 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     progress.enable_steady_tick(Duration::from_millis(200));
     let study = CostStudy::new(&input.scene, &input.models, &settings, || progress.inc(1));
     progress.finish_and_clear();
+    if let Some(rays) = &settings.rays {
+        tell_of_missing(&rays.textures, &input.scene, verbosity);
+    }
     let mut study = study.map_err(|error| match error {
-        StudyError::Write { .. } | StudyError::Render(_) => anyhow::Error::new(error),
+        StudyError::Write { .. } => anyhow::Error::new(error),
         StudyError::RepeatedSamples(_) => anyhow::Error::new(error).context("--pixel-samples"),
         _ => anyhow::Error::new(error).context("--tolerances"),
     })?;
@@ -282,6 +285,7 @@ impl PictureArgs {
         };
         let cameras: anyhow::Result<Vec<_>> = places.map(camera).collect();
         let mut settings = RaySettings::new(cameras?);
+        settings.textures = input.textures.clone();
         if !self.pixel_samples.is_empty() {
             settings.samples.clone_from(&self.pixel_samples);
         }

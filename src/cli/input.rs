@@ -1,13 +1,12 @@
 //! From the command line's input to a scene with its models: files, stdin, built-in scenes, bare meshes.
 
-use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, bail, ensure};
 use photosurface::{
-    BUILT_IN_SCENES, DVec3, Findings, Model, Object, Observer, ReadError, Scene, Source,
-    load_models, read_gltf_bytes, read_model,
+    Access, BUILT_IN_SCENES, DVec3, Findings, Model, Object, Observer, ReadError, Scene, Source,
+    Textures, read_whole,
 };
 
 use super::args::{InputArgs, ObserverArgs};
@@ -18,11 +17,19 @@ use super::output::extension;
 /// Beyond its centre, by how many diagonals of a bare mesh's bounds the observer stands off.
 const STAND_OFF: f64 = 2.0;
 
+/// How many bytes the text of a scene has at most: some hundred thousand objects.
+const MAX_SCENE_BYTES: u64 = 100_000_000;
+
+/// How many bytes a GLB has at most, since its header says so in 32 bits.
+const MAX_GLB_BYTES: u64 = u32::MAX as u64;
+
 /// A scene with its models and where they came from.
 #[derive(Debug)]
 pub(super) struct Input {
     /// What to call it: `bunny` of `bunny.obj`.
     pub(super) name: String,
+    /// The file, as messages name it.
+    pub(super) place: String,
     /// Whether it is a mesh without a scene.
     pub(super) is_mesh: bool,
     /// The scene with everything that the flags say.
@@ -31,6 +38,15 @@ pub(super) struct Input {
     pub(super) models: Vec<Model>,
     /// The files it was read from, for they must not be written over: also buffers, images and libraries.
     pub(super) files: Vec<PathBuf>,
+    /// For pictures of it: none is decoded so far.
+    pub(super) textures: Textures,
+}
+
+/// What is read, for whom, and how much is said about it.
+struct Reading<'a> {
+    access: Access,
+    observer: &'a ObserverArgs,
+    verbosity: Verbosity,
 }
 
 impl Input {
@@ -40,52 +56,59 @@ impl Input {
         observer: &ObserverArgs,
         verbosity: Verbosity,
     ) -> anyhow::Result<Self> {
+        let reading = Reading {
+            access: input.access(),
+            observer,
+            verbosity,
+        };
         match input.input.as_deref().map(Path::new) {
             None => {
                 let name = input.example.as_deref().unwrap_or(BUILT_IN_SCENES[0].name);
                 let scene =
                     Scene::from_json(built_in(name)?.json).expect("built-in scenes are tested");
-                Self::from_scene(name, scene, None, observer, verbosity)
+                reading.scene(name, scene, None)
             }
             Some(path) if path == Path::new("-") => {
-                let mut bytes = Vec::new();
-                std::io::stdin()
-                    .lock()
-                    .read_to_end(&mut bytes)
-                    .context("stdin")?;
+                let bytes = from_stdin()?;
                 if bytes.starts_with(b"glTF") {
-                    let read = read_gltf_bytes(&bytes, Path::new("")).context("stdin")?;
-                    return Self::from_mesh("mesh", read, None, observer, verbosity);
+                    let read = reading.access.read_gltf_bytes(&bytes, Path::new(""));
+                    return reading.mesh("mesh", read.context("stdin")?, None);
                 }
                 let scene = scene_from_stdin(&bytes)?;
-                Self::from_scene("stdin", scene, None, observer, verbosity)
+                reading.scene("stdin", scene, None)
             }
-            Some(path) => Self::from_path(path, observer, verbosity),
+            Some(path) => reading.path(path),
         }
     }
+}
 
-    fn from_path(
-        path: &Path,
-        observer: &ObserverArgs,
-        verbosity: Verbosity,
-    ) -> anyhow::Result<Self> {
+impl Reading<'_> {
+    fn path(&self, path: &Path) -> anyhow::Result<Input> {
         let place = path.display().to_string();
         let name = path
             .file_stem()
             .map_or("scene".into(), |stem| stem.to_string_lossy().into_owned());
+        let wrong = |error: ReadError| match &error {
+            ReadError::NotOrdinary { found, .. } => {
+                anyhow!("{place}: {}", not_a_file(found))
+            }
+            // The error names the file itself.
+            _ if error.file() == Some(path) => error.into(),
+            _ => anyhow::Error::new(error).context(place.clone()),
+        };
         match extension(path).as_deref() {
             Some("json") => {
-                let bytes = fs::read(path).with_context(|| place.clone())?;
+                let bytes = read_whole(path, MAX_SCENE_BYTES).map_err(wrong)?;
                 let scene = scene_from_bytes(&bytes).with_context(|| place)?;
-                Self::from_scene(&name, scene, Some(path), observer, verbosity)
+                self.scene(&name, scene, Some(path))
             }
             Some("glb" | "gltf" | "obj") => {
-                let read = read_model(path).map_err(|error| match &error {
-                    // It names the file itself.
-                    ReadError::File { path: named, .. } if named == path => error.into(),
-                    _ => anyhow::Error::new(error).context(place),
-                })?;
-                Self::from_mesh(&name, read, Some(path), observer, verbosity)
+                let read = self.access.read_model(path).map_err(wrong)?;
+                self.mesh(&name, read, Some(path))
+            }
+            // Such as what a shell makes of `<(photosurface example cube)`.
+            _ if path.exists() && !path.is_file() && !path.is_dir() => {
+                bail!("{place}: {}", not_a_file("a pipe or a device"))
             }
             _ => bail!(
                 "{place}: unknown extension, expected a scene (.json) or a mesh (.glb, .gltf, .obj)"
@@ -93,49 +116,46 @@ impl Input {
         }
     }
 
-    fn from_scene(
-        name: &str,
-        scene: Scene,
-        path: Option<&Path>,
-        observer: &ObserverArgs,
-        verbosity: Verbosity,
-    ) -> anyhow::Result<Self> {
-        let scene = observer.apply(scene)?;
+    fn scene(&self, name: &str, scene: Scene, path: Option<&Path>) -> anyhow::Result<Input> {
+        let scene = self.observer.apply(scene)?;
         let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
         let place = path.map_or(name.to_string(), |path| path.display().to_string());
-        let (models, found) = load_models(&scene, directory).with_context(|| place)?;
+        let read = self.access.load_models(&scene, directory);
+        let (models, found) = read.with_context(|| place.clone())?;
         let mut files: Vec<PathBuf> = path.map(Path::to_owned).into_iter().collect();
         for (file, findings) in found {
             for note in findings.notes {
-                verbosity.note(format_args!("{}: {note}", file.display()));
+                self.verbosity
+                    .note(format_args!("{}: {note}", file.display()));
             }
             files.extend(findings.files);
         }
-        Ok(Self {
+        Ok(Input {
             name: name.to_owned(),
+            place,
             is_mesh: false,
             files,
             models,
             scene,
+            textures: Textures::new(self.access.max_texture_pixels),
         })
     }
 
     /// A bare mesh, at rest at the origin; the observer, unless placed, moves towards it.
-    fn from_mesh(
+    fn mesh(
+        &self,
         name: &str,
         (model, findings): (Model, Findings),
         path: Option<&Path>,
-        flags: &ObserverArgs,
-        verbosity: Verbosity,
-    ) -> anyhow::Result<Self> {
+    ) -> anyhow::Result<Input> {
+        let place = path.map_or("stdin".into(), |path| path.display().to_string());
         for note in &findings.notes {
-            let place = path.map_or("stdin".into(), |path| path.display().to_string());
-            verbosity.note(format_args!("{place}: {note}"));
+            self.verbosity.note(format_args!("{place}: {note}"));
         }
         let source = Source::File(path.unwrap_or(Path::new("-")).to_owned());
         let scene = Scene::new(Observer::default(), vec![Object::new(name, source)])?;
-        let mut scene = flags.apply(scene)?;
-        if !flags.has_place() {
+        let mut scene = self.observer.apply(scene)?;
+        if !self.observer.has_place() {
             let observer = *scene.observer();
             let position = stand_off(&model, observer.velocity.direction());
             scene = scene.with_observer(Observer {
@@ -143,14 +163,66 @@ impl Input {
                 ..observer
             });
         }
-        Ok(Self {
+        Ok(Input {
             name: name.to_owned(),
+            place,
             is_mesh: true,
             scene,
             models: vec![model],
             files: findings.files,
+            textures: Textures::new(self.access.max_texture_pixels),
         })
     }
+}
+
+/// Tells of the textures that pictures went without, and in which file they are.
+pub(super) fn tell_of_missing(textures: &Textures, scene: &Scene, verbosity: Verbosity) {
+    for missing in textures.missing() {
+        let object = scene.objects().iter().find(|o| o.name == missing.object);
+        let file = match object.map(|object| &object.source) {
+            Some(Source::File(file)) if file == Path::new("-") => "stdin: ".to_owned(),
+            Some(Source::File(file)) => format!("{}: ", file.display()),
+            _ => String::new(),
+        };
+        let reason = &missing.source;
+        let cause = std::error::Error::source(reason);
+        let cause = cause.map_or(String::new(), |cause| format!(": {cause}"));
+        verbosity.note(format_args!("{file}{missing}: {reason}{cause}"));
+    }
+}
+
+/// What to do about an input that is no ordinary file.
+fn not_a_file(found: &str) -> String {
+    match found {
+        "a folder" => "is a folder, expected a file".to_owned(),
+        _ => format!("is {found}, expected an ordinary file; write - and send it to stdin"),
+    }
+}
+
+/// All of stdin, if it is no more than a scene or a GLB can be.
+fn from_stdin() -> anyhow::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let mut stdin = std::io::stdin().lock();
+    let mut read_to = |limit: u64, bytes: &mut Vec<u8>| -> anyhow::Result<bool> {
+        let more = (limit + 1).saturating_sub(bytes.len() as u64);
+        stdin
+            .by_ref()
+            .take(more)
+            .read_to_end(bytes)
+            .context("stdin")?;
+        Ok(bytes.len() as u64 > limit)
+    };
+    let mut limit = MAX_SCENE_BYTES;
+    let mut is_more = read_to(limit, &mut bytes)?;
+    if is_more && bytes.starts_with(b"glTF") {
+        limit = MAX_GLB_BYTES;
+        is_more = read_to(limit, &mut bytes)?;
+    }
+    ensure!(
+        !is_more,
+        "stdin: too long, expected at most {limit} bytes of a scene (JSON), or {MAX_GLB_BYTES} of a GLB"
+    );
+    Ok(bytes)
 }
 
 fn scene_from_bytes(bytes: &[u8]) -> anyhow::Result<Scene> {

@@ -11,7 +11,7 @@ use super::accuracy::AccuracyArgs;
 use super::args::{InputArgs, ObserverArgs};
 use super::camera::{CameraArgs, View};
 use super::guides::GuideArgs;
-use super::input::Input;
+use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print};
 use super::output::{
     check_destinations, extension, file_for_each, from_first_to_last, is_stdout, progress_bar,
@@ -97,13 +97,15 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
         &stage,
         (camera, guides),
         (method, input.is_mesh),
+        &input.textures,
         wanted,
         verbosity,
         progress.clone(),
-    )?;
+    );
     studio.take_all(|number, picture| write(&files[number], picture))?;
     progress.finish_and_clear();
     studio.tell_of_empty_pictures();
+    tell_of_missing(&input.textures, stage.scene(), verbosity);
     if !is_stdout(&files[0]) {
         verbosity.result(format_args!(
             "{}: {}",

@@ -6,8 +6,8 @@ use std::time::Instant;
 use anyhow::Context;
 use indicatif::ProgressBar;
 use photosurface::{
-    Camera, Color, DVec3, Picture, PictureOptions, PictureSize, Scenery, Stage, Strokes, Viewpoint,
-    Wanted,
+    Camera, Color, DVec3, Picture, PictureOptions, PictureSize, Scenery, Stage, Strokes, Textures,
+    Viewpoint, Wanted,
 };
 
 use super::accuracy::Tally;
@@ -26,6 +26,7 @@ pub(super) struct Studio<'a> {
     stage: &'a Stage,
     camera: &'a CameraArgs,
     guides: &'a GuideArgs,
+    textures: &'a Textures,
     wanted: Wanted,
     verbosity: Verbosity,
     progress: ProgressBar,
@@ -46,18 +47,20 @@ impl<'a> Studio<'a> {
         stage: &'a Stage,
         (camera, guides): (&'a CameraArgs, &'a GuideArgs),
         (method, is_mesh): (Method, bool),
+        textures: &'a Textures,
         wanted: Wanted,
         verbosity: Verbosity,
         progress: ProgressBar,
-    ) -> anyhow::Result<Self> {
-        Ok(Self {
+    ) -> Self {
+        Self {
             at_rest: match method {
-                Method::Rays => Some(at_rest(stage)?),
+                Method::Rays => Some(at_rest(stage, textures)),
                 Method::Mesh => None,
             },
             stage,
             camera,
             guides,
+            textures,
             wanted,
             verbosity,
             progress,
@@ -65,7 +68,7 @@ impl<'a> Studio<'a> {
             uncounted: 0,
             is_mesh,
             empty: vec![],
-        })
+        }
     }
 
     /// Takes all pictures and hands over each, with its number, as soon as it is there.
@@ -149,8 +152,8 @@ impl<'a> Studio<'a> {
         let scenery = match &self.at_rest {
             Some(scenery) => scenery,
             None => {
-                let mut scenery = Scenery::new();
-                self.add_photosurfaces(&mut scenery, step)?;
+                let mut scenery = Scenery::with_textures(self.textures);
+                self.add_photosurfaces(&mut scenery, step);
                 mapped = scenery;
                 &mapped
             }
@@ -183,13 +186,13 @@ impl<'a> Studio<'a> {
     }
 
     fn outside_view(&mut self, steps: Range<usize>, outside: &Outside) -> anyhow::Result<Picture> {
-        let mut scenery = Scenery::new();
+        let mut scenery = Scenery::with_textures(self.textures);
         if let Some(marker) = self.stage.marker() {
-            scenery.add_plain(marker)?;
+            scenery.add_plain(marker);
         }
         let mut edges: Vec<Strokes<DVec3>> = Vec::new();
         for step in steps {
-            self.add_photosurfaces(&mut scenery, step)?;
+            self.add_photosurfaces(&mut scenery, step);
             for (mesh, ghost_edges) in self.guides.ghosts(self.stage, step).0 {
                 scenery.add_ghost(mesh, ghost_edges.color);
                 edges.push(ghost_edges);
@@ -203,7 +206,7 @@ impl<'a> Studio<'a> {
         Ok(picture)
     }
 
-    fn add_photosurfaces(&mut self, scenery: &mut Scenery, step: usize) -> anyhow::Result<()> {
+    fn add_photosurfaces(&mut self, scenery: &mut Scenery, step: usize) {
         let objects = self.stage.scene().objects();
         let stage = self.stage;
         // On a sheet by meshes each is in two pictures.
@@ -214,12 +217,11 @@ impl<'a> Studio<'a> {
                 .iter()
                 .find(|object| object.name == surface.facts.object)
                 .expect("a photosurface is of an object of its scene");
-            scenery.add_photosurface(object, &surface.mesh, surface.material.as_ref())?;
+            scenery.add_photosurface(object, &surface.mesh, surface.material.as_ref());
             if is_new {
                 self.tally.add(&surface.facts, surface.facts.triangles);
             }
         }
-        Ok(())
     }
 
     fn take(&self, scenery: &Scenery, camera: &Camera, viewpoint: Viewpoint) -> Picture {
@@ -257,12 +259,12 @@ fn between(background: Color) -> Color {
     Color(background.0.map(|level| level / 2 + 0x40))
 }
 
-fn at_rest(stage: &Stage) -> anyhow::Result<Scenery> {
-    let mut scenery = Scenery::new();
+fn at_rest(stage: &Stage, textures: &Textures) -> Scenery {
+    let mut scenery = Scenery::with_textures(textures);
     for (object, parts) in stage.objects() {
         for (_, part) in parts {
-            scenery.add_at_rest(object, part)?;
+            scenery.add_at_rest(object, part);
         }
     }
-    Ok(scenery)
+    scenery
 }

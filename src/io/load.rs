@@ -1,11 +1,12 @@
 //! The geometry of a scene's objects: files are read, shapes are made.
 
 use std::collections::HashMap;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::read::{Findings, ReadError, read_model};
+use super::read::{Access, Findings, ReadError, read_named_model};
 use crate::mesh::{Model, ShapeError};
 use crate::scene::{Scene, Source};
 
@@ -35,9 +36,20 @@ pub enum LoadError {
 
 /// The name of the file, unless its error says it already.
 fn in_file(path: &Path, source: &ReadError) -> String {
-    match source {
-        ReadError::File { path: named, .. } if named == path => String::new(),
+    match source.file() {
+        Some(named) if named == path => String::new(),
         _ => format!(": {}", path.display()),
+    }
+}
+
+/// The folder of a file with all links followed, and its name.
+fn place_of(path: &Path) -> PathBuf {
+    let folder = path
+        .parent()
+        .and_then(|folder| fs::canonicalize(folder).ok());
+    match (folder, path.file_name()) {
+        (Some(folder), Some(name)) => folder.join(name),
+        _ => path.to_owned(),
     }
 }
 
@@ -45,7 +57,8 @@ fn in_file(path: &Path, source: &ReadError) -> String {
 pub type FileFindings = Vec<(PathBuf, Findings)>;
 
 /// One model for each object of a scene, in their order, and what there is to know about the files; file
-/// names are relative to `directory`. A file that several objects use is read once.
+/// names are relative to `directory`, and those are read that [`Access::default`] allows. A file that several objects use
+/// is read once.
 ///
 /// # Errors
 ///
@@ -54,33 +67,52 @@ pub fn load_models(
     scene: &Scene,
     directory: &Path,
 ) -> Result<(Vec<Model>, FileFindings), LoadError> {
-    let mut known: HashMap<PathBuf, Model> = HashMap::new();
-    let mut files = Vec::new();
-    let mut models = Vec::with_capacity(scene.objects().len());
-    for object in scene.objects() {
-        let model = match &object.source {
-            Source::File(file) => {
-                let path = directory.join(file);
-                if !known.contains_key(&path) {
-                    let (model, found) = read_model(&path).map_err(|source| LoadError::File {
+    Access::default().load_models(scene, directory)
+}
+
+impl Access {
+    /// As [`load_models`]; `directory` is the folder of the scene.
+    ///
+    /// # Errors
+    ///
+    /// As [`load_models`], and a file that may not be read.
+    pub fn load_models(
+        &self,
+        scene: &Scene,
+        directory: &Path,
+    ) -> Result<(Vec<Model>, FileFindings), LoadError> {
+        let reach = self.reach(directory);
+        // By folder and name, whatever way leads to the folder.
+        let mut known: HashMap<PathBuf, Model> = HashMap::new();
+        let mut files = Vec::new();
+        let mut models = Vec::with_capacity(scene.objects().len());
+        for object in scene.objects() {
+            let model = match &object.source {
+                Source::File(file) => {
+                    let path = directory.join(file);
+                    let wrong = |source| LoadError::File {
                         object: object.name.clone(),
                         path: path.clone(),
                         source: Box::new(source),
-                    })?;
-                    files.push((path.clone(), found));
-                    known.insert(path.clone(), model);
+                    };
+                    let place = place_of(&path);
+                    if !known.contains_key(&place) {
+                        let (model, found) = read_named_model(&path, &reach).map_err(wrong)?;
+                        files.push((path.clone(), found));
+                        known.insert(place.clone(), model);
+                    }
+                    known[&place].clone()
                 }
-                known[&path].clone()
-            }
-            Source::Shape(shape, appearance) => {
-                shape.model(appearance).map_err(|source| LoadError::Shape {
-                    object: object.name.clone(),
-                    source,
-                })?
-            }
-            Source::Model(model) => Model::clone(model),
-        };
-        models.push(model);
+                Source::Shape(shape, appearance) => {
+                    shape.model(appearance).map_err(|source| LoadError::Shape {
+                        object: object.name.clone(),
+                        source,
+                    })?
+                }
+                Source::Model(model) => Model::clone(model),
+            };
+            models.push(model);
+        }
+        Ok((models, files))
     }
-    Ok((models, files))
 }

@@ -6,8 +6,8 @@ mod write;
 
 pub use load::{FileFindings, LoadError, load_models};
 pub use read::{
-    AccessorProblem, DocumentProblem, Findings, NodeProblem, Note, ObjProblem, ReadError,
-    UriProblem, read_gltf_bytes, read_model,
+    Access, AccessorProblem, DocumentProblem, Findings, NodeProblem, Note, ObjProblem, ReadError,
+    UriProblem, read_gltf_bytes, read_model, read_whole,
 };
 pub use write::{
     Export, Format, GltfFile, GltfOutput, Playback, Report, StageTime, Target, WriteError,

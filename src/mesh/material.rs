@@ -4,6 +4,7 @@
 //! program does not know travels as well as what it knows, and no number changes on the way. What the program
 //! needs itself is read out of those words.
 
+mod pixels;
 mod properties;
 mod texture;
 
@@ -14,6 +15,8 @@ use glam::{DAffine2, DVec2};
 use serde_json::Value;
 use thiserror::Error;
 
+pub use pixels::PictureError;
+pub(crate) use pixels::decode;
 pub(crate) use properties::{clamp_factors, extension_names, retain_textures};
 pub(crate) use texture::map_sources;
 pub use texture::{Image, Texture, Wrap};

@@ -5,8 +5,10 @@ mod material;
 mod part;
 mod shape;
 
-pub use material::{AlphaMode, Image, Material, MaterialError, Texture, Wrap};
-pub(crate) use material::{clamp_factors, extension_names, map_sources, position, retain_textures};
+pub use material::{AlphaMode, Image, Material, MaterialError, PictureError, Texture, Wrap};
+pub(crate) use material::{
+    clamp_factors, decode, extension_names, map_sources, position, retain_textures,
+};
 pub use part::{Model, Part};
 pub(crate) use shape::Band;
 pub use shape::{

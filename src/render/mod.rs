@@ -18,12 +18,13 @@ mod scenery;
 mod sight;
 mod sphere;
 mod stroke;
+mod texture;
 mod turned;
 
 pub use camera::{Camera, CameraError, MAX_PICTURE_SIDE, PictureSize, Projection};
 pub use lettering::{lettering, lettering_width};
-pub use paint::RenderError;
 pub use picture::Picture;
 pub(crate) use scenery::grid_places;
 pub use scenery::{PictureOptions, Scenery, Viewpoint};
 pub use stroke::Strokes;
+pub use texture::{MissingTexture, Textures};

@@ -3,25 +3,10 @@
 use std::sync::Arc;
 
 use glam::{DAffine2, DVec2, DVec4, Vec3, Vec4};
-use thiserror::Error;
 
-use crate::mesh::{AlphaMode, Color, Material, Texture, Wrap};
-
-/// Why something cannot be drawn.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum RenderError {
-    /// A texture that is no picture.
-    #[error("the texture {name} of \"{object}\" cannot be decoded, expected PNG or JPEG")]
-    Texture {
-        /// The object that it is on.
-        object: String,
-        /// As the source names it.
-        name: String,
-        /// What is wrong with it.
-        source: image::ImageError,
-    },
-}
+use super::Textures;
+use super::texture::Pixels;
+use crate::mesh::{AlphaMode, Material};
 
 /// A material, ready to be looked at: its base colour.
 ///
@@ -54,31 +39,26 @@ impl Paint {
         }
     }
 
-    /// The paint of `object`'s material.
-    ///
-    /// # Errors
-    ///
-    /// A texture that is neither PNG nor JPEG.
-    pub(super) fn new(material: Option<&Arc<Material>>, object: &str) -> Result<Self, RenderError> {
+    /// The paint of `object`'s material; without its texture where that cannot be decoded.
+    pub(super) fn new(material: Option<&Arc<Material>>, object: &str, textures: &Textures) -> Self {
         let Some(material) = material else {
-            return Ok(Self::plain());
+            return Self::plain();
         };
-        let texture = material.base_color_texture().map(|(texture, set)| {
+        let texture = material.base_color_texture().and_then(|(texture, set)| {
             let (transform, other_set) = material.base_color_transform();
-            let pixels = Pixels::decode(texture, object)?;
-            Ok(Placed {
-                pixels,
+            Some(Placed {
+                pixels: textures.pixels(texture, object)?,
                 set: other_set.unwrap_or(set) as usize,
                 transform,
             })
         });
-        Ok(Self {
+        Self {
             base_color: DVec4::from(material.base_color()).as_vec4(),
-            texture: texture.transpose()?,
+            texture,
             alpha_mode: material.alpha_mode(),
             double_sided: material.double_sided(),
             unlit: material.is_unlit(),
-        })
+        }
     }
 
     /// Which set of texture coordinates it uses, if any.
@@ -102,85 +82,6 @@ impl Paint {
     }
 }
 
-/// A decoded texture.
-struct Pixels {
-    image: image::RgbaImage,
-    /// Whether it is magnified without mixing pixels.
-    nearest: bool,
-    /// Beyond left and right, and beyond top and bottom.
-    wrap: [Wrap; 2],
-    /// Linear values of the 256 that a byte can say in sRGB.
-    linear: [f32; 256],
-}
-
-impl Pixels {
-    fn decode(texture: &Texture, object: &str) -> Result<Self, RenderError> {
-        // Without one that every program can read there are others, which the decoder refuses by their kind.
-        let file = texture.image().or(texture.images().first());
-        let bytes = file.map_or(&[][..], |file| file.bytes());
-        let image = image::load_from_memory(bytes).map_err(|source| {
-            let name = file.and_then(|file| file.name());
-            RenderError::Texture {
-                object: object.to_owned(),
-                name: name
-                    .map_or_else(|| "without a name".to_owned(), |name| format!("\"{name}\"")),
-                source,
-            }
-        })?;
-        let linear = std::array::from_fn(|byte| Color([byte as u8; 3]).linear()[0]);
-        Ok(Self {
-            image: image.to_rgba8(),
-            nearest: texture.is_magnified_by_nearest(),
-            wrap: texture.wrap(),
-            linear,
-        })
-    }
-
-    /// Linear colour and opacity. Colours are decoded before they are mixed, as glTF demands.
-    fn at(&self, texture: DVec2) -> Vec4 {
-        let (width, height) = self.image.dimensions();
-        let place = texture * DVec2::new(width.into(), height.into());
-        if self.nearest {
-            return self.pixel(place.floor());
-        }
-        let corner = (place - 0.5).floor();
-        let part = (place - 0.5 - corner).as_vec2();
-        let row = |y: f64| {
-            let left = self.pixel(corner + DVec2::new(0.0, y));
-            left.lerp(self.pixel(corner + DVec2::new(1.0, y)), part.x)
-        };
-        row(0.0).lerp(row(1.0), part.y)
-    }
-
-    fn pixel(&self, place: DVec2) -> Vec4 {
-        let (width, height) = self.image.dimensions();
-        let x = wrapped(place.x, width, self.wrap[0]);
-        let y = wrapped(place.y, height, self.wrap[1]);
-        let [red, green, blue, alpha] = self.image.get_pixel(x, y).0;
-        let linear = |byte: u8| self.linear[usize::from(byte)];
-        Vec4::new(
-            linear(red),
-            linear(green),
-            linear(blue),
-            f32::from(alpha) / 255.0,
-        )
-    }
-}
-
-/// The pixel that stands for the one numbered `index`, a whole number, of `count`.
-fn wrapped(index: f64, count: u32, wrap: Wrap) -> u32 {
-    let length = f64::from(count);
-    let inside = match wrap {
-        Wrap::ClampToEdge => index,
-        Wrap::Repeat => index.rem_euclid(length),
-        Wrap::MirroredRepeat => {
-            let there_and_back = index.rem_euclid(2.0 * length);
-            there_and_back.min(2.0 * length - 1.0 - there_and_back)
-        }
-    };
-    inside.clamp(0.0, length - 1.0) as u32
-}
-
 #[cfg(test)]
 mod tests {
     use std::f64::consts::FRAC_PI_2;
@@ -189,7 +90,7 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::mesh::Image;
+    use crate::mesh::{Image, Texture};
 
     /// Two pixels beside each other: black, opaque, and white, half transparent.
     fn material(sampler: Option<Value>, mode: Value, transform: Value) -> Arc<Material> {
@@ -221,8 +122,12 @@ mod tests {
         Arc::new(Material::new(properties, vec![texture]).unwrap())
     }
 
+    fn paint_of(material: &Arc<Material>) -> Paint {
+        Paint::new(Some(material), "x", &Textures::default())
+    }
+
     fn paint(sampler: Option<Value>, mode: Value) -> Paint {
-        Paint::new(Some(&material(sampler, mode, json!({}))), "x").unwrap()
+        paint_of(&material(sampler, mode, json!({})))
     }
 
     #[test]
@@ -239,11 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn textures_continue_as_their_sampler_says() {
-        let indices = |wrap| [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0].map(|i| wrapped(i, 2, wrap));
-        assert_eq!(indices(Wrap::Repeat), [1, 0, 1, 0, 1, 0, 1]);
-        assert_eq!(indices(Wrap::ClampToEdge), [0, 0, 0, 0, 1, 1, 1]);
-        assert_eq!(indices(Wrap::MirroredRepeat), [1, 1, 0, 0, 1, 1, 0]);
+    fn textures_are_magnified_as_their_sampler_says() {
         let nearest = json!({ "magFilter": 9728 });
         let paint = paint(Some(nearest), json!({}));
         let red = |u| paint.color_at(DVec2::new(u, 0.5), Vec4::ONE).0.x;
@@ -268,7 +169,7 @@ mod tests {
     fn textures_are_moved_as_they_say() {
         let transform = json!({ "offset": [0.25, 0.0], "scale": [1.0, 0.5], "rotation": -FRAC_PI_2, "texCoord": 3 });
         let material = material(Some(json!({ "magFilter": 9728 })), json!({}), transform);
-        let paint = Paint::new(Some(&material), "x").unwrap();
+        let paint = paint_of(&material);
         assert_eq!(paint.texture_set(), Some(3));
         let red = |u, v| paint.color_at(DVec2::new(u, v), Vec4::ONE).0.x;
         // (u, v) is read at (0.25 - v / 2, u).
@@ -277,10 +178,11 @@ mod tests {
     }
 
     #[test]
-    fn a_texture_that_is_no_picture_is_named() {
+    fn without_a_picture_the_rest_is_drawn() {
         let broken = of_image(b"\x89PNG\r\n\x1a\n".to_vec(), None, json!({}), json!({}));
-        let error = Paint::new(Some(&broken), "chair").err().unwrap();
-        let message = error.to_string();
-        assert!(message.contains("\"wood\" of \"chair\""), "{message}");
+        let paint = paint_of(&broken);
+        assert_eq!(paint.texture_set(), None);
+        let seen = paint.color_at(DVec2::ZERO, Vec4::ONE);
+        assert_eq!(seen, (Vec3::new(1.0, 0.5, 0.25), 1.0));
     }
 }

@@ -8,11 +8,11 @@ use rayon::prelude::*;
 use super::body::{Body, Geometry, Sitter, Stands};
 use super::caster::Caster;
 use super::look::{Look, nearest};
-use super::paint::{Paint, RenderError};
+use super::paint::Paint;
 use super::picture::{Picture, encoded};
 use super::sphere::Ball;
 use super::turned::Turned;
-use super::{Camera, Strokes};
+use super::{Camera, Strokes, Textures};
 use crate::mesh::{Appearance, Color, Material, Mesh, Part, Shape};
 use crate::scene::{Object, Source};
 use crate::spacetime::WorldLine;
@@ -53,7 +53,7 @@ const FACETS: f64 = 1e-4;
 /// let mut scenery = Scenery::new();
 /// for (object, parts) in stage.objects() {
 ///     for (_, part) in parts {
-///         scenery.add_at_rest(object, part)?;
+///         scenery.add_at_rest(object, part);
 ///     }
 /// }
 /// let camera = Camera::new(PictureSize::new(64, 48)?, Projection::Pinhole { vertical_fov_deg: 30.0 }, DVec3::NEG_Z)?;
@@ -72,6 +72,7 @@ pub struct Scenery {
     bodies: Vec<Body>,
     /// Each with its linear colour.
     ghosts: Vec<(Body, Vec3)>,
+    textures: Textures,
 }
 
 /// Where the picture is taken.
@@ -111,16 +112,25 @@ impl Scenery {
         Self::default()
     }
 
+    /// Nothing yet; textures are shared with everything else that has these.
+    pub fn with_textures(textures: &Textures) -> Self {
+        Self {
+            textures: textures.clone(),
+            ..Self::default()
+        }
+    }
+
+    /// The textures of what is in it: also which of them could not be decoded, so that pictures go without.
+    pub fn textures(&self) -> &Textures {
+        &self.textures
+    }
+
     /// Adds a part of `object`, at rest, in the object's rest frame.
     ///
     /// Spheres, cylinders, rods and cones are met as the surfaces that they are, whatever facets their parts have. A torus
     /// gets facets within a ten thousandth of its size, unless it has a resolution of its own: the
     /// quartic of the true one is ill-conditioned wherever a ray grazes it.
-    ///
-    /// # Errors
-    ///
-    /// A texture that cannot be decoded.
-    pub fn add_at_rest(&mut self, object: &Object, part: &Part) -> Result<(), RenderError> {
+    pub fn add_at_rest(&mut self, object: &Object, part: &Part) {
         let geometry = match &object.source {
             Source::Shape(Shape::Sphere(sphere), _) => {
                 Geometry::Ball(Ball::new(sphere.clone(), object.model_to_rest()))
@@ -132,33 +142,25 @@ impl Scenery {
             _ => Geometry::Mesh(Caster::new(part.mesh().clone())),
         };
         let stands = Stands::AtRest(object.world_line());
-        self.add(geometry, part.material.as_ref(), &object.name, stands)
+        self.add(geometry, part.material.as_ref(), &object.name, stands);
     }
 
     /// Adds a photosurface of `object`, in the observer's frame with the observer at the origin.
-    ///
-    /// # Errors
-    ///
-    /// A texture that cannot be decoded.
     pub fn add_photosurface(
         &mut self,
         object: &Object,
         mesh: &Mesh,
         material: Option<&Arc<Material>>,
-    ) -> Result<(), RenderError> {
+    ) {
         let geometry = Geometry::Mesh(Caster::new(mesh.clone()));
         let stands = Stands::Mapped(object.world_line());
-        self.add(geometry, material, &object.name, stands)
+        self.add(geometry, material, &object.name, stands);
     }
 
     /// Adds a thing as it stands in the observer's frame.
-    ///
-    /// # Errors
-    ///
-    /// A texture that cannot be decoded.
-    pub fn add_plain(&mut self, part: &Part) -> Result<(), RenderError> {
+    pub fn add_plain(&mut self, part: &Part) {
         let geometry = Geometry::Mesh(Caster::new(part.mesh().clone()));
-        self.add(geometry, part.material.as_ref(), &part.name, Stands::Plain)
+        self.add(geometry, part.material.as_ref(), &part.name, Stands::Plain);
     }
 
     /// Adds a thing that stands in the observer's frame and is only hinted at, in one colour.
@@ -178,13 +180,12 @@ impl Scenery {
         material: Option<&Arc<Material>>,
         object: &str,
         stands: Stands,
-    ) -> Result<(), RenderError> {
+    ) {
         self.bodies.push(Body {
             geometry,
-            paint: Paint::new(material, object)?,
+            paint: Paint::new(material, object, &self.textures),
             stands,
         });
-        Ok(())
     }
 
     /// The picture that `camera` takes; `row_done` is called after every row.
@@ -329,7 +330,7 @@ mod tests {
     fn pixel(parts: &[Part], eye: DVec3, look: DVec3) -> [u8; 3] {
         let mut scenery = Scenery::new();
         for part in parts {
-            scenery.add_plain(part).unwrap();
+            scenery.add_plain(part);
         }
         let size = PictureSize::new(1, 1).unwrap();
         let projection = Projection::Pinhole {

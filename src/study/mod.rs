@@ -28,11 +28,10 @@ pub use uniform::{UniformCost, UniformRun};
 use crate::io::WriteError;
 use crate::mesh::Model;
 use crate::photosurface::{SceneFacts, Stage};
-use crate::render::RenderError;
 use crate::scene::{Scene, Tolerance};
 
 /// What a study looks at, and how closely.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct CostSettings {
     /// Of meshes: all in one unit, none twice, in any order; none for no meshes.
     pub tolerances: Vec<Tolerance>,
@@ -117,9 +116,6 @@ pub enum StudyError {
     /// One number of rays twice.
     #[error("{0} rays along each side of a pixel are there twice, expected each number once")]
     RepeatedSamples(u32),
-    /// What cannot be drawn.
-    #[error(transparent)]
-    Render(#[from] RenderError),
     /// One tolerance twice.
     #[error("the tolerance {0} is there twice, expected each once")]
     Repeated(Tolerance),
@@ -168,15 +164,13 @@ impl CostStudy {
             done();
         }
         let stage = Stage::new(scene.clone(), models.to_vec());
-        let cameras = rays.map_or(&[][..], |rays| &rays.cameras);
-        let (pictures, rays) = match samples.is_empty() {
-            true => (None, vec![]),
-            false => {
+        let (pictures, rays) = match rays {
+            Some(rays) if !samples.is_empty() => {
                 let repeats = settings.repeats.get();
-                let (pictures, rays) =
-                    ray_cost::ray_costs(&stage, cameras, &samples, repeats, done)?;
+                let (pictures, rays) = ray_cost::ray_costs(&stage, rays, &samples, repeats, done);
                 (Some(pictures), rays)
             }
+            _ => (None, vec![]),
         };
         Ok(Self {
             scene: stage.facts(),

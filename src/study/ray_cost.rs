@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::mesh_cost::median;
 use super::random::Random;
 use crate::photosurface::Stage;
-use crate::render::{Camera, PictureOptions, RenderError, Scenery, Viewpoint, grid_places};
+use crate::render::{Camera, PictureOptions, Scenery, Textures, Viewpoint, grid_places};
 
 /// A reference has so many times the places of the finest picture along each side of a pixel: by theory, a mean of two is
 /// then off by about a third of what this picture is. What is left of that is taken off too; with fewer places
@@ -17,12 +17,14 @@ use crate::render::{Camera, PictureOptions, RenderError, Scenery, Viewpoint, gri
 const REFERENCE_FINER: u32 = 2;
 
 /// Which pictures by rays are studied.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct RaySettings {
     /// What the observer looks through at each step of the scene.
     pub cameras: Vec<Camera>,
     /// Rays a pixel along each side, as [`PictureOptions::samples`], none twice, in any order.
     pub samples: Vec<NonZeroU32>,
+    /// The textures of the pictures; they say afterwards which of them pictures go without.
+    pub textures: Textures,
 }
 
 impl RaySettings {
@@ -32,6 +34,7 @@ impl RaySettings {
         Self {
             cameras,
             samples: samples.collect(),
+            textures: Textures::default(),
         }
     }
 }
@@ -111,19 +114,20 @@ type Light = Vec<Vec3>;
 /// Studies each of `samples`, the fewest first and at least one; `done` is called after the references and after each.
 pub(super) fn ray_costs(
     stage: &Stage,
-    cameras: &[Camera],
+    settings: &RaySettings,
     samples: &[u32],
     repeats: usize,
     mut done: impl FnMut(),
-) -> Result<(Pictures, Vec<RayCost>), RenderError> {
+) -> (Pictures, Vec<RayCost>) {
+    let cameras = &settings.cameras[..];
     let steps = stage.scene().steps().len();
     assert_eq!(cameras.len(), steps, "a camera for each step");
     let size = cameras[0].size();
     let finest = samples[samples.len() - 1];
-    let mut scenery = Scenery::new();
+    let mut scenery = Scenery::with_textures(&settings.textures);
     for (object, parts) in stage.objects() {
         for (_, part) in parts {
-            scenery.add_at_rest(object, part)?;
+            scenery.add_at_rest(object, part);
         }
     }
     let studio = Studio {
@@ -170,7 +174,7 @@ pub(super) fn ray_costs(
         }
     });
     let costs = costs.collect();
-    Ok((pictures, costs))
+    (pictures, costs)
 }
 
 /// Everything at rest, and who looks at it.

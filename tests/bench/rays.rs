@@ -77,7 +77,7 @@ impl Sight {
         let mut scenery = Scenery::new();
         for (object, parts) in stage.objects() {
             for (_, part) in parts {
-                scenery.add_at_rest(object, part).expect("plain colours");
+                scenery.add_at_rest(object, part);
             }
         }
         Self {

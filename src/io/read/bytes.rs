@@ -3,13 +3,17 @@
 //! The data of a large model is as large as the model: held whole beside it, it would take half of all memory.
 
 use std::borrow::Cow;
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::ReadError;
+use super::access::{Reach, open_ordinary};
+
+/// How many bytes are read at most of a file that does not say how many it has.
+const MOST_UNANNOUNCED: u64 = 1 << 30;
 
 /// A run of bytes; several threads may read it at once.
 pub(super) enum Bytes<'a> {
@@ -23,26 +27,37 @@ pub(super) enum Bytes<'a> {
 }
 
 impl Bytes<'_> {
-    /// At most `limit` bytes of a file; what is no regular file is read at once.
+    /// At most `limit` bytes of an ordinary file, wherever it lies.
     pub(super) fn open(path: &Path, limit: u64) -> Result<Self, ReadError> {
-        let open = || {
-            let file = File::open(path)?;
-            let metadata = file.metadata()?;
-            // Some systems have files that only seem to be empty.
-            if !metadata.is_file() || metadata.len() == 0 {
-                let mut bytes = vec![];
-                io::Read::read_to_end(&mut io::Read::take(file, limit), &mut bytes)?;
-                return Ok(Self::Held(bytes.into()));
-            }
-            Ok(Self::InFile {
-                file: file.into(),
-                path: path.to_owned(),
-                range: 0..metadata.len().min(limit),
-            })
-        };
-        open().map_err(|source| ReadError::File {
+        Self::of_file(open_ordinary(path)?, path, limit)
+    }
+
+    /// At most `limit` bytes of a file that another one names.
+    pub(super) fn open_in(reach: &Reach, path: &Path, limit: u64) -> Result<Self, ReadError> {
+        Self::of_file(reach.open(path)?, path, limit)
+    }
+
+    fn of_file(
+        (file, metadata): (File, Metadata),
+        path: &Path,
+        limit: u64,
+    ) -> Result<Self, ReadError> {
+        // Some systems have files that only seem to be empty.
+        if metadata.len() == 0 {
+            let mut bytes = vec![];
+            let limit = limit.min(MOST_UNANNOUNCED);
+            io::Read::read_to_end(&mut io::Read::take(file, limit), &mut bytes).map_err(
+                |source| ReadError::File {
+                    path: path.to_owned(),
+                    source,
+                },
+            )?;
+            return Ok(Self::Held(bytes.into()));
+        }
+        Ok(Self::InFile {
+            file: file.into(),
             path: path.to_owned(),
-            source,
+            range: 0..metadata.len().min(limit),
         })
     }
 

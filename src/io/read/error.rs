@@ -1,7 +1,7 @@
 //! Why a file cannot be read.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -26,6 +26,33 @@ pub enum ReadError {
         path: PathBuf,
         /// What the system says.
         source: io::Error,
+    },
+    /// A file that another names and that is not where such files are read.
+    #[error(
+        "{path:?} is not in the folder of the file that names it, nor in the working directory, nor below; \
+         --allow-read {folder:?} allows it"
+    )]
+    OutOfReach {
+        /// Which file, as it is named.
+        path: PathBuf,
+        /// The folder in which it is, once all links are followed.
+        folder: PathBuf,
+    },
+    /// A pipe, a device or a folder.
+    #[error("{path:?} is {found}, expected an ordinary file")]
+    NotOrdinary {
+        /// Which file.
+        path: PathBuf,
+        /// What it is.
+        found: &'static str,
+    },
+    /// A file that would take too much memory.
+    #[error("{path:?} is too long, expected at most {limit} bytes")]
+    TooLong {
+        /// Which file.
+        path: PathBuf,
+        /// The limit.
+        limit: u64,
     },
     /// Less than a GLB header, or less than it announces.
     #[error("a GLB file of {found} bytes, expected {expected}: it is cut off")]
@@ -144,6 +171,31 @@ pub enum ReadError {
         /// What there is.
         instead: String,
     },
+}
+
+impl ReadError {
+    /// The file that its message names, if it names one.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::File { path, .. }
+            | Self::OutOfReach { path, .. }
+            | Self::NotOrdinary { path, .. }
+            | Self::TooLong { path, .. } => Some(path),
+            _ => None,
+        }
+    }
+
+    /// The same of a file that is named otherwise.
+    pub(super) fn at(mut self, name: &Path) -> Self {
+        if let Self::File { path, .. }
+        | Self::OutOfReach { path, .. }
+        | Self::NotOrdinary { path, .. }
+        | Self::TooLong { path, .. } = &mut self
+        {
+            name.clone_into(path);
+        }
+        self
+    }
 }
 
 /// What is wrong with a part of glTF's JSON.

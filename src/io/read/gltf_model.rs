@@ -1,6 +1,5 @@
 //! A glTF file as a model: every primitive that its scene draws becomes a part.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
@@ -35,22 +34,9 @@ struct Piece {
 /// What a part takes beside its vertices, in the measure of a [`Quota`](super::quota::Quota).
 const OF_A_PART: u64 = 64;
 
-/// Reads the bytes of a GLB or glTF file.
-///
-/// Files that it refers to are looked for in `folder`. [`read_model`](super::read_model) says what is
-/// read of it.
-///
-/// # Errors
-///
-/// Anything that keeps a part of the surface from being read as glTF 2.0 defines it.
-pub fn read_gltf_bytes(bytes: &[u8], folder: &Path) -> Result<(Model, Findings), ReadError> {
-    read_gltf(Bytes::Held(bytes.into()), folder)
-}
-
 /// Reads a GLB or glTF file.
-pub(super) fn read_gltf(bytes: Bytes, folder: &Path) -> Result<(Model, Findings), ReadError> {
+pub(super) fn read_gltf(bytes: Bytes, folder: Folder) -> Result<(Model, Findings), ReadError> {
     let mut notes = vec![];
-    let folder = Folder::new(folder);
     let document = read_document(bytes, &folder, &mut notes)?;
     let tree = read_tree(&document, &mut notes)?;
     note_other_content(&document, &mut notes);

@@ -3,15 +3,15 @@
 //! Everything that a material says travels, in the words of the file; images are kept byte for byte and
 //! never decoded. One that cannot be had costs the texture, not the file.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use serde_json::Value;
 
 use super::ReadError;
-use super::bytes::Bytes;
 use super::document::Document;
 use super::note::{Note, add_note};
+use super::picture;
 use super::uri::{Folder, read_uri};
 use crate::mesh::{
     Image, Material, Texture, clamp_factors, map_sources, position, retain_textures,
@@ -26,8 +26,16 @@ pub(super) struct Materials<'a> {
     /// `None` for those that cannot be had.
     textures: HashMap<usize, Option<Arc<Texture>>>,
     images: HashMap<usize, Option<Arc<Image>>>,
-    /// Where images are whose bytes have been read: views and URIs.
-    read: HashSet<(Option<u64>, Option<String>)>,
+    /// The bytes of images, so that those of many images are there once.
+    bytes: HashMap<Place, Arc<Vec<u8>>>,
+}
+
+/// Where an image is.
+#[derive(PartialEq, Eq, Hash)]
+enum Place {
+    Uri(String),
+    /// Buffer, offset and length.
+    Part(usize, u64, u64),
 }
 
 impl<'a> Materials<'a> {
@@ -40,7 +48,7 @@ impl<'a> Materials<'a> {
             fitted: Fitted::default(),
             textures: HashMap::new(),
             images: HashMap::new(),
-            read: HashSet::new(),
+            bytes: HashMap::new(),
         }
     }
 
@@ -150,9 +158,20 @@ impl<'a> Materials<'a> {
         notes: &mut Vec<Note>,
     ) -> Option<Arc<Image>> {
         if !self.images.contains_key(&index) {
-            let image = self.read_image(index).map(Arc::new);
-            let image = image.map_err(|reason| self.drop_image(index, reason, notes));
-            self.images.insert(index, image.ok());
+            let image = match self.read_image(index) {
+                Ok((image, format)) => {
+                    if let Some(format) = format {
+                        let image = self.name_of_image(index);
+                        add_note(notes, Note::ImageConverted { image, format });
+                    }
+                    Some(Arc::new(image))
+                }
+                Err(reason) => {
+                    self.drop_image(index, reason, notes);
+                    None
+                }
+            };
+            self.images.insert(index, image);
         }
         let image = self.images.get(&index)?.clone()?;
         if for_every_program && !image.is_for_every_program() {
@@ -163,45 +182,61 @@ impl<'a> Materials<'a> {
     }
 
     fn drop_image(&self, index: usize, reason: String, notes: &mut Vec<Note>) {
+        let image = self.name_of_image(index);
+        add_note(notes, Note::Image { image, reason });
+    }
+
+    /// What to call an image in notes.
+    fn name_of_image(&self, index: usize) -> String {
         let source = self.document.looks.images.get(index);
         let word = |key: &str| source.and_then(|source| source.get(key)?.as_str());
         let name = word("name").or_else(|| word("uri"));
         let name = name.filter(|name| !name.starts_with("data:"));
-        let image = name.map_or(format!("images[{index}]"), |name| format!("{name:?}"));
-        add_note(notes, Note::Image { image, reason });
+        name.map_or(format!("images[{index}]"), |name| format!("{name:?}"))
     }
 
-    /// An image, or why it cannot be had.
-    fn read_image(&mut self, index: usize) -> Result<Image, String> {
+    /// An image, and the name of the format that it had, if that was another; or why it cannot be had.
+    fn read_image(&mut self, index: usize) -> Result<(Image, Option<&'static str>), String> {
         let source = self.document.looks.images.get(index);
         let mut properties = source.ok_or("there is no such image")?.clone();
         let object = properties.as_object_mut().ok_or("it is not an object")?;
         let uri = object.shift_remove("uri");
         let view = object.shift_remove("bufferView");
         let uri = uri.as_ref().and_then(Value::as_str);
-        let view = view.and_then(|view| view.as_u64());
-        let bytes = match (uri, view) {
-            (Some(uri), _) => {
+        let bytes = match (uri, view.and_then(|view| view.as_u64())) {
+            (Some(uri), _) => self.shared(Place::Uri(uri.to_owned()), |this| {
                 let place = format!("images[{index}].uri");
-                let bytes = read_uri(uri, self.folder, u64::MAX, &place);
-                let bytes = bytes.and_then(Bytes::into_vec);
-                bytes.map_err(|error| reason(&error))?
-            }
+                let bytes = read_uri(uri, this.folder, u64::MAX, &place);
+                this.folder.picture(bytes.map_err(|error| reason(&error))?)
+            })?,
             (None, Some(view)) => {
-                let bytes = self.document.view(view as usize);
-                let bytes = bytes.map_err(|error| reason(&error))?;
-                bytes.into_vec().map_err(|error| reason(&error))?
+                let view = view as usize;
+                let bytes = self.document.view(view).map_err(|error| reason(&error))?;
+                let part = &self.document.root.buffer_views[view];
+                let offset = part.byte_offset.map_or(0, |offset| offset.0);
+                let place = Place::Part(part.buffer.value(), offset, part.byte_length.0);
+                self.shared(place, |this| this.folder.picture(bytes))?
             }
             (None, None) => return Err("it has neither a uri nor a bufferView".to_owned()),
         };
-        let file = uri.filter(|uri| !uri.starts_with("data:"));
-        let place = (view, file.map(str::to_owned));
-        if place != (None, None) && !self.read.insert(place) {
-            let more = self.document.quota.take(bytes.len() as u64);
-            more.map_err(|problem| format!("its bytes belong to another one too; {problem}"))?;
+        picture::image(properties, bytes, uri.unwrap_or_default(), self.folder)
+    }
+
+    /// The bytes at a place, which are read once.
+    fn shared(
+        &mut self,
+        place: Place,
+        read: impl FnOnce(&Self) -> Result<Vec<u8>, String>,
+    ) -> Result<Arc<Vec<u8>>, String> {
+        if let Some(bytes) = self.bytes.get(&place) {
+            return Ok(bytes.clone());
         }
-        let image = Image::from_properties(properties, bytes);
-        image.ok_or_else(|| "of a type that is not known".to_owned())
+        let bytes = Arc::new(read(self)?);
+        // Data in place of a reference is longer than what it stands for.
+        if !matches!(&place, Place::Uri(uri) if uri.starts_with("data:")) {
+            self.bytes.insert(place, bytes.clone());
+        }
+        Ok(bytes)
     }
 }
 

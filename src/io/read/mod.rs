@@ -3,6 +3,7 @@
 //! What is read is read as the format defines it; what cannot be is an error that says where; what is left
 //! out is a note.
 
+mod access;
 mod accessor;
 mod bytes;
 mod deform;
@@ -22,6 +23,7 @@ mod normals;
 mod note;
 mod obj;
 mod obj_lines;
+mod picture;
 mod polygon;
 mod primitive;
 mod quota;
@@ -30,8 +32,9 @@ mod uri;
 
 use std::path::{Path, PathBuf};
 
+pub(super) use access::Reach;
+pub use access::{Access, read_whole};
 pub use error::{AccessorProblem, DocumentProblem, NodeProblem, ObjProblem, ReadError, UriProblem};
-pub use gltf_model::read_gltf_bytes;
 pub use note::Note;
 
 use glam::DVec3;
@@ -42,6 +45,7 @@ use document::is_glb;
 use gltf_model::read_gltf;
 use note::unique;
 use obj::read_obj_bytes;
+use uri::Folder;
 
 /// What there is to know about a model beside the model.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -82,17 +86,65 @@ fn checked(model: Model) -> Result<Model, ReadError> {
 ///
 /// glTF 2.0: all triangles of the default scene, with the transforms of their nodes, in the default pose of
 /// skins and morph targets. OBJ: all faces. Either with normals, texture coordinates, colours and
-/// materials; those of glTF with everything that they say.
+/// materials; those of glTF with everything that they say. Of the files that it names, those are read that
+/// [`Access::default`] allows.
 ///
 /// # Errors
 ///
 /// A file that cannot be read, that is not as its format defines it, that needs an extension which is
 /// not known, or that has no triangles.
 pub fn read_model(path: &Path) -> Result<(Model, Findings), ReadError> {
+    Access::default().read_model(path)
+}
+
+/// Reads the bytes of a GLB or glTF file.
+///
+/// Files that it refers to are looked for in `folder`. [`read_model`] says what is read of it.
+///
+/// # Errors
+///
+/// Anything that keeps a part of the surface from being read as glTF 2.0 defines it.
+pub fn read_gltf_bytes(bytes: &[u8], folder: &Path) -> Result<(Model, Findings), ReadError> {
+    Access::default().read_gltf_bytes(bytes, folder)
+}
+
+impl Access {
+    /// As [`read_model`]; `path` itself may be anywhere.
+    ///
+    /// # Errors
+    ///
+    /// As [`read_model`], and a buffer that may not be read. Libraries and images that may not be read are left out with
+    /// a note.
+    pub fn read_model(&self, path: &Path) -> Result<(Model, Findings), ReadError> {
+        let reach = self.reach(path.parent().unwrap_or(Path::new("")));
+        read_bytes(Bytes::open(path, u64::MAX)?, path, reach)
+    }
+
+    /// As [`read_gltf_bytes`].
+    ///
+    /// # Errors
+    ///
+    /// As [`read_gltf_bytes`], and a buffer that may not be read.
+    pub fn read_gltf_bytes(
+        &self,
+        bytes: &[u8],
+        folder: &Path,
+    ) -> Result<(Model, Findings), ReadError> {
+        let bytes = Bytes::Held(bytes.into());
+        read_gltf(bytes, Folder::within(folder, self.reach(folder)))
+    }
+}
+
+/// Reads the model in a file that another one names.
+pub(super) fn read_named_model(path: &Path, reach: &Reach) -> Result<(Model, Findings), ReadError> {
+    let bytes = Bytes::open_in(reach, path, u64::MAX)?;
+    read_bytes(bytes, path, reach.clone())
+}
+
+fn read_bytes(bytes: Bytes, path: &Path, reach: Reach) -> Result<(Model, Findings), ReadError> {
     let extension = path.extension().unwrap_or_default();
     let extension = extension.to_string_lossy().to_lowercase();
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let bytes = Bytes::open(path, u64::MAX)?;
+    let folder = Folder::within(path.parent().unwrap_or(Path::new("")), reach);
     let is_gltf = match extension.as_str() {
         "glb" | "gltf" => true,
         "obj" => false,

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::materials::reason;
 use super::note::{Note, add_note};
+use super::picture;
 use super::uri::Folder;
 use crate::mesh::{Image, Texture};
 
@@ -120,11 +121,20 @@ impl<'a> Pictures<'a> {
     ) -> Option<Arc<Texture>> {
         let path = folder.join(&map.file);
         if !self.images.contains_key(&path) {
-            let image = self.read(&path, &map.file).map_err(|reason| {
-                let image = format!("{:?}", map.file);
-                add_note(notes, Note::Image { image, reason });
-            });
-            self.images.insert(path.clone(), image.ok().map(Arc::new));
+            let image = format!("{:?}", map.file);
+            let read = match self.read(&path, &map.file) {
+                Ok((read, format)) => {
+                    if let Some(format) = format {
+                        add_note(notes, Note::ImageConverted { image, format });
+                    }
+                    Some(Arc::new(read))
+                }
+                Err(reason) => {
+                    add_note(notes, Note::Image { image, reason });
+                    None
+                }
+            };
+            self.images.insert(path.clone(), read);
         }
         let image = self.images.get(&path)?.clone()?;
         let key = (path, map.clamped);
@@ -139,12 +149,17 @@ impl<'a> Pictures<'a> {
         )
     }
 
-    fn read(&self, path: &Path, name: &str) -> Result<Image, String> {
-        let bytes = self.files.read(path, u64::MAX).map_err(|e| reason(&e))?;
+    /// A picture, and the name of the format that it had, if that was another; or why there is none.
+    fn read(&self, path: &Path, name: &str) -> Result<(Image, Option<&'static str>), String> {
+        let bytes = self.files.open(path, u64::MAX).map_err(|e| reason(&e))?;
+        let bytes = self.files.picture(bytes)?;
         let stem = Path::new(name).file_stem().unwrap_or_default();
-        let image = Image::new(Some(&stem.to_string_lossy()), bytes);
-        let image = image.filter(Image::is_for_every_program);
-        image.ok_or_else(|| "neither PNG nor JPEG".to_owned())
+        let properties = json!({ "name": stem.to_string_lossy() });
+        let (image, format) = picture::image(properties, bytes, name, self.files)?;
+        match image.is_for_every_program() {
+            true => Ok((image, format)),
+            false => Err("neither PNG nor JPEG".to_owned()),
+        }
     }
 }
 

@@ -189,6 +189,13 @@ pub enum Note {
         /// Why.
         reason: String,
     },
+    /// An image that was made into PNG, since glTF does not have its format.
+    ImageConverted {
+        /// Which one.
+        image: String,
+        /// The format that it had.
+        format: &'static str,
+    },
     /// A material library that cannot be read.
     MaterialLibrary {
         /// The file.
@@ -351,6 +358,9 @@ impl fmt::Display for Note {
                 write!(f, "material {material:?}: bump map taken as a normal map")
             }
             Self::Image { image, reason } => write!(f, "image {image} dropped: {reason}"),
+            Self::ImageConverted { image, format } => {
+                write!(f, "image {image} made into PNG from {format}")
+            }
             Self::MaterialLibrary { path, reason } => {
                 write!(f, "material library {path:?} skipped: {reason}")
             }

@@ -24,10 +24,9 @@ use crate::mesh::{Material, Mesh, MeshError, Model, Part};
 /// group are called `default_name`.
 pub(super) fn read_obj_bytes(
     bytes: &[u8],
-    folder: &Path,
+    folder: Folder,
     default_name: &str,
 ) -> Result<(Model, Findings), ReadError> {
-    let folder = Folder::new(folder);
     let prepared = prepare(&String::from_utf8_lossy(bytes))?;
     let mut notes = vec![];
     note_other_content(&prepared, &mut notes);
@@ -284,7 +283,7 @@ mod tests {
     use super::*;
 
     fn read(file: &str) -> (Model, Vec<Note>) {
-        let read = read_obj_bytes(file.as_bytes(), Path::new("nowhere"), "stem");
+        let read = read_obj_bytes(file.as_bytes(), Folder::new("nowhere".as_ref()), "stem");
         let (model, findings) = read.unwrap();
         (model, findings.notes)
     }
@@ -327,7 +326,8 @@ mod tests {
     #[test]
     fn a_line_of_three_points_is_no_triangle() {
         let file = format!("{CORNERS}l 1 2 3\n");
-        let error = read_obj_bytes(file.as_bytes(), Path::new("nowhere"), "stem").unwrap_err();
+        let error =
+            read_obj_bytes(file.as_bytes(), Folder::new("nowhere".as_ref()), "stem").unwrap_err();
         assert_eq!(
             error.to_string(),
             "no triangles, expected at least one; the file has no faces; \

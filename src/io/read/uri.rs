@@ -3,27 +3,79 @@
 //! glTF 2.0, section 2.8: relative paths as in RFC 3986, with reserved characters percent-encoded,
 //! and data URIs as in RFC 2397. Everything else would have to be fetched and is refused.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::path::{Path, PathBuf};
 
 use data_url::DataUrl;
 use percent_encoding::percent_decode_str;
 
+use super::access::Reach;
 use super::bytes::Bytes;
+use super::materials::reason;
 use super::{ReadError, UriProblem};
 
 /// The folder of a file, in which those that it refers to are looked for; keeps account of what was opened.
 pub(super) struct Folder<'a> {
     path: &'a Path,
+    reach: Reach,
     opened: RefCell<Vec<PathBuf>>,
+    /// How many bytes of pictures may still be read, and how many pixels decoded.
+    left: Cell<Left>,
+}
+
+/// What of the limits of one model is left.
+#[derive(Clone, Copy)]
+struct Left {
+    picture_bytes: u64,
+    pixels: u64,
 }
 
 impl<'a> Folder<'a> {
-    pub(super) fn new(path: &'a Path) -> Self {
+    /// A folder where nothing but what is in `reach` is read.
+    pub(super) fn within(path: &'a Path, reach: Reach) -> Self {
+        let left = Left {
+            picture_bytes: reach.max_picture_bytes(),
+            pixels: reach.max_pixels,
+        };
         Self {
             path,
+            reach,
             opened: RefCell::default(),
+            left: left.into(),
         }
+    }
+
+    /// A folder and what may be read for files in it by default.
+    #[cfg(test)]
+    pub(super) fn new(path: &'a Path) -> Self {
+        Self::within(path, super::Access::default().reach(path))
+    }
+
+    /// How many pixels may still be decoded.
+    pub(super) fn pixels_left(&self) -> u64 {
+        self.left.get().pixels
+    }
+
+    /// Takes account of pixels that were decoded, as many as are left at most.
+    pub(super) fn take_pixels(&self, pixels: u64) {
+        let mut left = self.left.get();
+        left.pixels = left.pixels.saturating_sub(pixels);
+        self.left.set(left);
+    }
+
+    /// All bytes of a picture, if they do not exceed what may be read of pictures.
+    pub(super) fn picture(&self, bytes: Bytes) -> Result<Vec<u8>, String> {
+        let mut left = self.left.get();
+        let length = bytes.len() as u64;
+        left.picture_bytes = left.picture_bytes.checked_sub(length).ok_or_else(|| {
+            format!(
+                "it has {length} bytes, expected at most {} for all pictures of a model together; \
+                 --max-texture-pixels allows more",
+                self.reach.max_picture_bytes()
+            )
+        })?;
+        self.left.set(left);
+        bytes.into_vec().map_err(|error| reason(&error))
     }
 
     pub(super) fn path(&self) -> &Path {
@@ -36,8 +88,8 @@ impl<'a> Folder<'a> {
     }
 
     /// At most `limit` bytes of a file, to be read when they are wanted.
-    fn open(&self, path: &Path, limit: u64) -> Result<Bytes<'static>, ReadError> {
-        let bytes = Bytes::open(path, limit)?;
+    pub(super) fn open(&self, path: &Path, limit: u64) -> Result<Bytes<'static>, ReadError> {
+        let bytes = Bytes::open_in(&self.reach, path, limit)?;
         self.opened.borrow_mut().push(path.to_owned());
         Ok(bytes)
     }

@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use image::{DynamicImage, ImageFormat};
 use serde_json::{Map, Value, json};
 
+use super::pixels::{PictureError, decode};
 use super::properties::add_extension_names;
 
 /// An image, or several of which a program takes the one that it knows, and how it is laid on a surface.
@@ -129,7 +131,8 @@ pub(crate) fn map_sources(
 pub struct Image {
     /// An `image` of glTF that does not say where its bytes are.
     properties: Value,
-    bytes: Vec<u8>,
+    /// Shared among the images that a file makes of the same bytes.
+    bytes: Arc<Vec<u8>>,
 }
 
 impl Image {
@@ -140,7 +143,11 @@ impl Image {
     }
 
     /// An image of a file that says so much of it; `None` if neither it nor the first bytes tell the type.
-    pub(crate) fn from_properties(mut properties: Value, bytes: Vec<u8>) -> Option<Self> {
+    pub(crate) fn from_properties(
+        mut properties: Value,
+        bytes: impl Into<Arc<Vec<u8>>>,
+    ) -> Option<Self> {
+        let bytes = bytes.into();
         if let Some(mime_type) = mime_type(&bytes) {
             properties["mimeType"] = mime_type.into();
         }
@@ -167,6 +174,19 @@ impl Image {
     /// Whether glTF allows it without an extension.
     pub(crate) fn is_for_every_program(&self) -> bool {
         ["image/png", "image/jpeg"].contains(&self.mime_type())
+    }
+
+    /// Its pixels, at most `left` of them.
+    pub(crate) fn decode(&self, left: u64) -> Result<DynamicImage, PictureError> {
+        let format = match self.mime_type() {
+            "image/png" => ImageFormat::Png,
+            "image/jpeg" => ImageFormat::Jpeg,
+            other => {
+                let mime_type = other.to_owned();
+                return Err(PictureError::Format { mime_type });
+            }
+        };
+        decode(&self.bytes, format, left)
     }
 
     /// The file.
