@@ -13,6 +13,7 @@ pub use built_in::{BUILT_IN_SCENES, BuiltInScene};
 pub use json::SceneError;
 pub use tolerance::{Tolerance, ToleranceError};
 
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -147,14 +148,12 @@ impl Scene {
         if objects.is_empty() {
             return Err(InvalidScene::NoObjects);
         }
+        let mut names = HashSet::with_capacity(objects.len());
         for (index, object) in objects.iter().enumerate() {
             if object.name.is_empty() {
                 return Err(InvalidScene::EmptyName(index));
             }
-            if objects[..index]
-                .iter()
-                .any(|other| other.name == object.name)
-            {
+            if !names.insert(&object.name) {
                 return Err(InvalidScene::RepeatedName(object.name.clone()));
             }
         }
