@@ -264,3 +264,31 @@ fn an_interrupted_picture_is_not_there() {
     assert_eq!(workplace.interrupt(line, "INT", begun), Some(130));
     assert!(workplace.files().is_empty(), "{:?}", workplace.files());
 }
+
+/// At the largest speeds places are from 1e-152 to 1e152 away: the sheet is made, whatever the direction.
+#[test]
+fn cameras_look_somewhere_at_any_speed() {
+    let workplace = Workplace::with_ball();
+    for rapidity in ["20", "200", "350"] {
+        for direction in ["1,2,3", "0,0,-1", "-1,0,0"] {
+            let line = format!(
+                "render ball.json --sheet --no-subdivide --size 16x12 --samples 1 --steps=-1,0,1 \
+                 --rapidity {rapidity} --direction {direction} -o sheet.png"
+            );
+            let run = workplace.run(&line);
+            // Not certified, for nothing is refined.
+            assert!(run.status == 0 || run.status == 1, "{run}");
+            assert!(!run.stderr.contains("NaN"), "{run}");
+            assert_eq!(png_size(&workplace.read("sheet.png")), (3 * 20 - 4, 28));
+        }
+    }
+}
+
+#[test]
+fn a_camera_in_the_middle_of_what_it_frames_is_told_by_its_flag() {
+    let workplace = Workplace::with_ball();
+    workplace.write("point.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    workplace
+        .run("render point.obj --beta 0 --observer 0,0,0 --view outside --from 0.5,0.5,0 --size 16x12 -o p.png")
+        .error(&["--from", "expected another place"]);
+}

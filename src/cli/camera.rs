@@ -153,6 +153,9 @@ impl CameraArgs {
             CameraError::Look(_) if self.target.is_some() => {
                 anyhow!("--target is the place of the camera, expected another one")
             }
+            CameraError::Look(_) if self.from.is_some() => anyhow!(
+                "--from is the middle of what is shown, expected another place, or a --look"
+            ),
             _ => error.into(),
         })
     }
@@ -197,20 +200,33 @@ impl CameraArgs {
             let local =
                 |place: &DVec3| DVec3::new(place.dot(right), place.dot(up), place.dot(away));
             let (low, high) = bounds(places.iter().map(local));
-            let middle = (low + high) / 2.0;
+            // Halves first: the sum of two large numbers may be none.
+            let middle = low / 2.0 + high / 2.0;
             let target = right * middle.x + up * middle.y + away * middle.z;
-            let target = self.target.unwrap_or(target);
+            let target = match self.target {
+                Some(target) => target,
+                // Nothing is framed as well by one place as by another.
+                None if places.is_empty() => DVec3::ZERO,
+                None => target,
+            };
             let distances = places.iter().map(|place| {
                 let from_target = local(&(*place - target));
                 let across = (from_target.x.abs() / self.aspect()).max(from_target.y.abs());
                 from_target.z + FRAME * across / half
             });
-            (target, distances.fold(0.0, f64::max))
+            let distance = distances.fold(0.0, f64::max);
+            (target, distance.max(least_distance(target, distance)))
         });
         let frames: Vec<_> = frames.collect();
         let distance = frames.iter().map(|frame| frame.1).fold(0.0, f64::max);
         let outside = |(target, _): (DVec3, f64)| {
             let place = self.from.unwrap_or(target + away * distance);
+            ensure!(
+                target.is_finite() && place.is_finite() && (2.0 * half * distance).is_finite(),
+                "what is to be seen is so far away or so large, up to {:e}, that no camera outside can frame it; look at other \
+                 --steps, or at a lower speed",
+                places_reach(places)
+            );
             let camera = self.camera(fov, self.look.unwrap_or(target - place))?;
             let distance = match self.from {
                 Some(from) => from.distance(target),
@@ -231,7 +247,10 @@ pub(super) fn fitting_fov(places: impl Iterator<Item = Vec<DVec3>>, size: Pictur
     let widest = places.map(|places| {
         let middle = middle_of_sky(&places);
         // Of small angles the cosine knows nothing.
-        let angle = |place: &DVec3| place.cross(middle).length().atan2(place.dot(middle));
+        let angle = |place: &DVec3| {
+            let place = fair(*place);
+            place.cross(middle).length().atan2(place.dot(middle))
+        };
         places.iter().map(angle).fold(0.0, f64::max)
     });
     let half = widest.fold(0.0, f64::max) * FRAME;
@@ -245,11 +264,41 @@ pub(super) fn fitting_fov(places: impl Iterator<Item = Vec<DVec3>>, size: Pictur
 pub(super) fn middle_of_sky(places: &[DVec3]) -> DVec3 {
     let directions: Vec<_> = places
         .iter()
-        .filter_map(|place| place.try_normalize())
+        .filter_map(|place| fair(*place).try_normalize())
         .collect();
     // Not the mean of the vertices, of which there may be more on one side.
     let (low, high) = bounds(directions.into_iter());
     (low + high).try_normalize().unwrap_or(DVec3::NEG_Z)
+}
+
+/// A place, or what is in the same direction and neither so far away nor so close that squares overflow or vanish.
+fn fair(place: DVec3) -> DVec3 {
+    let largest = place.abs().max_element();
+    if (1e-140..1e140).contains(&largest) || largest == 0.0 || !place.is_finite() {
+        return place;
+    }
+    // In two steps, because the reciprocal of the least numbers is none.
+    let scale = if largest < 1.0 { 1e160 } else { 1e-160 };
+    let nearer = place * scale;
+    nearer / nearer.abs().max_element()
+}
+
+/// How far from `target` a camera has to be at least so that it looks at it in spite of roundings, and at a single point
+/// from somewhere.
+fn least_distance(target: DVec3, distance: f64) -> f64 {
+    let least = target.abs().max_element() * 1e-12;
+    if distance > 0.0 {
+        least
+    } else {
+        least.max(1.0)
+    }
+}
+
+/// The largest coordinate of all places.
+fn places_reach(places: &[Vec<DVec3>]) -> f64 {
+    let all = places.iter().flatten();
+    all.map(|place| place.abs().max_element())
+        .fold(0.0, f64::max)
 }
 
 fn bounds(places: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
@@ -321,6 +370,7 @@ fn color(text: &str) -> anyhow::Result<Color> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use photosurface::DVec2;
 
     #[test]
     fn what_is_outermost_stands_for_all() {
@@ -358,5 +408,108 @@ mod tests {
         }
         assert_eq!(color("#ff0080").unwrap(), Color([255, 0, 128]));
         assert!(color("red").is_err());
+    }
+
+    /// Flags as the command line has them.
+    fn flags(line: &str) -> CameraArgs {
+        #[derive(clap::Parser)]
+        struct Flags {
+            #[command(flatten)]
+            camera: CameraArgs,
+        }
+        let line = std::iter::once("flags").chain(line.split_whitespace());
+        <Flags as clap::Parser>::parse_from(line).camera
+    }
+
+    /// Whatever is framed: nothing, one point, tiny and huge things, far and near. The camera is finite and looks at the
+    /// middle, or there is one error that says what is wrong.
+    #[test]
+    fn every_frame_is_finite_or_an_error() {
+        let sizes = [
+            0.0, 1e-300, 1e-155, 1e-30, 1e-9, 1.0, 1e30, 1e152, 1e156, 1e290, 1e308,
+        ];
+        let mut frames = vec![vec![], vec![DVec3::splat(f64::NAN)]];
+        for size in sizes {
+            for away in sizes {
+                let middle = DVec3::new(0.2, -0.5, 0.8) * away;
+                frames.push(vec![middle - size * 0.5, middle + size * 0.5]);
+                frames.push(vec![middle]);
+            }
+        }
+        let mut made = 0;
+        for line in [
+            "",
+            "--look=1,2,3",
+            "--look=0,1,0",
+            "--target=1,2,3",
+            "--from=0,0,0",
+            "--from=4,5,6 --fov 1e-6",
+            "--fov=179.99",
+            "--size 4000x1",
+        ] {
+            let flags = flags(line);
+            for places in &frames {
+                let fov = fitting_fov(std::iter::once(places.clone()), flags.size());
+                assert!(
+                    (*FIELD.start()..=*FIELD.end()).contains(&fov),
+                    "{line} {places:?}"
+                );
+                let look = middle_of_sky(places);
+                assert!((look.length() - 1.0).abs() < 1e-12, "{line} {places:?}");
+                flags.at_observer(fov, places).unwrap();
+                match flags.outside(std::slice::from_ref(places)) {
+                    Ok(outside) => {
+                        let [
+                            Outside {
+                                camera,
+                                place,
+                                height,
+                            },
+                        ] = outside[..]
+                        else {
+                            panic!("one frame, one camera")
+                        };
+                        let middle = DVec2::new(0.5, 0.5) * f64::from(camera.size().height());
+                        assert!(place.is_finite() && height.is_finite(), "{line} {places:?}");
+                        assert!(camera.direction(middle).is_finite());
+                        made += 1;
+                    }
+                    Err(error) => {
+                        let error = format!("{error:#}");
+                        assert!(
+                            !error.contains("NaN") || places.iter().any(|p| p.is_nan()),
+                            "{error}"
+                        );
+                        let of_frame = error.contains("no camera outside can frame it");
+                        let of_flag = error.contains("--from") || error.contains("--target");
+                        assert!(of_frame || of_flag, "{line} {places:?}: {error}");
+                    }
+                }
+            }
+        }
+        assert!(made > 1000, "{made}");
+    }
+
+    /// A place so far away, or so close, that its square is no number is seen where it is.
+    #[test]
+    fn the_middle_of_the_sky_is_that_of_places_at_any_distance() {
+        for distance in [1e-310, 1e-200, 1.0, 1e200, 1e305] {
+            let places = [DVec3::new(0.6, 0.8, 0.0), DVec3::new(0.6, -0.8, 0.0)];
+            let places = places.map(|place| place * distance);
+            assert!(
+                middle_of_sky(&places).distance(DVec3::X) < 1e-12,
+                "{distance}"
+            );
+            let size = PictureSize::new(100, 100).unwrap();
+            let fov = fitting_fov(std::iter::once(places.to_vec()), size);
+            assert_eq!(fov, *FIELD.end());
+            let ahead = places.map(|place| DVec3::new(place.x, place.y / 8.0, 0.0));
+            let fov = fitting_fov(std::iter::once(ahead.to_vec()), size);
+            let expected = 2.0 * FRAME * (1.0_f64 / 6.0).atan().to_degrees();
+            assert!(
+                (fov - expected).abs() < 1e-9,
+                "{distance}: {fov} {expected}"
+            );
+        }
     }
 }

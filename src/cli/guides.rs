@@ -115,9 +115,7 @@ impl GuideArgs {
         background: Color,
     ) {
         let viewpoint = Viewpoint::Outside(outside.place);
-        for edges in ghost_edges {
-            scenery.draw(picture, &outside.camera, viewpoint, edges);
-        }
+        scenery.draw(picture, &outside.camera, viewpoint, ghost_edges);
         if self.axes {
             let length = round_below(outside.height / 5.0);
             for (axis, name, color) in [
@@ -130,7 +128,12 @@ impl GuideArgs {
                     color,
                     width_px: 2.0,
                 };
-                scenery.draw(picture, &outside.camera, viewpoint, &line);
+                scenery.draw(
+                    picture,
+                    &outside.camera,
+                    viewpoint,
+                    std::slice::from_ref(&line),
+                );
                 let end = outside.camera.place(axis * (1.15 * length) - outside.place);
                 if let Some(end) = end {
                     let height = letters(picture);

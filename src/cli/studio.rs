@@ -207,15 +207,19 @@ impl<'a> Studio<'a> {
     }
 
     fn add_photosurfaces(&mut self, scenery: &mut Scenery, step: usize) {
-        let objects = self.stage.scene().objects();
         let stage = self.stage;
+        let mut objects = stage.scene().objects().iter().peekable();
         // On a sheet by meshes each is in two pictures.
         let is_new = step >= self.uncounted;
         self.uncounted = self.uncounted.max(step + 1);
         for surface in stage.photosurfaces(step, self.wanted) {
+            // Both are in the order of the scene, in which no two objects have one name.
+            while objects
+                .next_if(|object| object.name != surface.facts.object)
+                .is_some()
+            {}
             let object = objects
-                .iter()
-                .find(|object| object.name == surface.facts.object)
+                .peek()
                 .expect("a photosurface is of an object of its scene");
             scenery.add_photosurface(object, &surface.mesh, surface.material.as_ref());
             if is_new {

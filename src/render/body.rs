@@ -2,16 +2,19 @@
 
 use glam::{DVec2, DVec3, Vec4};
 
-use super::Viewpoint;
-use super::caster::{Caster, MeshHit, Ray};
-use super::cone::Cone;
+use super::caster::{Caster, MeshHit};
 use super::paint::Paint;
 use super::placed::SmoothHit;
+use super::ray::Ray;
 use super::sight::Sight;
 use super::sphere::Ball;
+use super::tree::Bounds;
 use super::turned::Turned;
 use crate::mesh::Mesh;
 use crate::spacetime::{WorldLine, unit};
+
+/// What has no corners is within a ball so much larger, roundings and all.
+const RADIUS_MARGIN: f64 = 1.0 + 1e-9;
 
 /// How bright a surface is that the lamp only grazes.
 pub(super) const AMBIENT: f32 = 0.25;
@@ -29,13 +32,26 @@ pub(super) enum Geometry {
 }
 
 impl Geometry {
+    /// A box around it, if there is something.
+    pub(super) fn bounds(&self) -> Option<Bounds> {
+        let (center, radius) = match self {
+            Self::Mesh(caster) => return caster.bounds(),
+            Self::Ball(ball) => ball.around(),
+            Self::Turned(turned) => turned.around(),
+        };
+        let radius = radius * RADIUS_MARGIN;
+        Some(Bounds {
+            low: center - radius,
+            high: center + radius,
+        })
+    }
+
     /// Centre and radius of a ball around it.
-    fn ball(&self) -> (DVec3, f64) {
+    pub(super) fn ball(&self) -> (DVec3, f64) {
         match self {
-            Self::Mesh(caster) => {
-                let (low, high) = caster.mesh().bounds().unwrap_or_default();
-                ((low + high) / 2.0, low.distance(high) / 2.0)
-            }
+            Self::Mesh(caster) => caster
+                .bounds()
+                .map_or((DVec3::ZERO, 0.0), |bounds| bounds.ball()),
             Self::Ball(ball) => ball.around(),
             Self::Turned(turned) => turned.around(),
         }
@@ -53,13 +69,16 @@ pub(super) enum Stands {
     Plain,
 }
 
-/// A body for the moment of one picture.
-pub(super) struct Sitter<'a> {
-    body: &'a Body,
-    /// How the observer sees it; none from outside.
-    sight: Option<Sight>,
-    /// Where on the sky it is.
-    cone: Cone,
+/// Where a ray meets a body.
+pub(super) struct Hit {
+    /// In units of the ray's direction, in the frame of the body's geometry.
+    pub(super) distance: f64,
+    /// Of any length.
+    normal: DVec3,
+    texture: DVec2,
+    vertex_color: Vec4,
+    /// The corners of a triangle.
+    corners: Option<[u32; 3]>,
 }
 
 /// What a ray meets.
@@ -74,85 +93,74 @@ pub(super) struct Meeting<'a> {
     pub(super) triangle: Option<[DVec3; 3]>,
 }
 
-impl<'a> Sitter<'a> {
-    pub(super) fn new(body: &'a Body, eye: DVec3, viewpoint: Viewpoint) -> Self {
-        let sight = match (viewpoint, body.stands) {
-            (
-                Viewpoint::Observer(observer, proper_time),
-                Stands::AtRest(line) | Stands::Mapped(line),
-            ) => Some(Sight::new(observer, &line, proper_time)),
-            _ => None,
-        };
-        let (center, radius) = body.geometry.ball();
-        let cone = match (&sight, body.stands) {
-            (Some(sight), Stands::AtRest(_)) => sight.cone(center, radius),
-            _ => Cone::of_ball(eye, center, radius),
-        };
-        Self { body, sight, cone }
+impl Body {
+    /// The nearest hit farther than `beyond` and not as far as `limit`.
+    pub(super) fn cast(&self, ray: &Ray, beyond: f64, limit: f64) -> Option<Hit> {
+        let (origin, direction) = (ray.origin(), ray.direction());
+        match &self.geometry {
+            Geometry::Mesh(caster) => {
+                let hit = caster.cast(ray, beyond, limit, self.paint.double_sided)?;
+                let (normal, texture, vertex_color) = attributes(caster.mesh(), &self.paint, &hit);
+                Some(Hit {
+                    distance: hit.distance,
+                    normal,
+                    texture,
+                    vertex_color,
+                    corners: Some(hit.corners),
+                })
+            }
+            Geometry::Ball(ball) => ball.cast(origin, direction, beyond, limit).map(smooth),
+            Geometry::Turned(turned) => turned.cast(origin, direction, beyond, limit).map(smooth),
+        }
     }
 
-    /// Where the ray from `eye` along `seen` meets it, farther than `beyond` and not as far as `limit`, both as
-    /// seen.
+    /// What is seen of a hit in the direction `seen`, which is `direction` in the frame of the geometry.
     pub(super) fn meeting(
         &self,
-        eye: DVec3,
-        seen: DVec3,
-        beyond: f64,
-        limit: f64,
-        wires: bool,
-    ) -> Option<Meeting<'a>> {
-        if !self.cone.may_hold(seen) {
-            return None;
-        }
-        let (origin, direction, stretch) = match (&self.sight, self.body.stands) {
-            (Some(sight), Stands::AtRest(_)) => {
-                let ray = sight.ray(seen);
-                (ray.origin, ray.direction, ray.stretch)
-            }
-            _ => (eye, seen, 1.0),
-        };
-        let [beyond, limit] = [beyond, limit].map(|seen| (seen * stretch).min(f64::MAX));
-        let paint = &self.body.paint;
-        let mut triangle = None;
-        let (distance, normal, texture, vertex_color) = match &self.body.geometry {
-            Geometry::Mesh(caster) => {
-                let ray = Ray::new(origin, direction);
-                let hit = caster.cast(&ray, beyond, limit, paint.double_sided)?;
-                let (normal, texture, color) = attributes(caster.mesh(), paint, &hit);
-                if wires && matches!(self.body.stands, Stands::Mapped(_)) {
-                    let place = |corner: u32| caster.mesh().positions()[corner as usize];
-                    triangle = Some(hit.corners.map(place));
-                }
-                (hit.distance, normal, texture, color)
-            }
-            Geometry::Ball(ball) => smooth(ball.cast(origin, direction, beyond, limit)?),
-            Geometry::Turned(turned) => smooth(turned.cast(origin, direction, beyond, limit)?),
-        };
-        let lit = match (&self.sight, self.body.stands) {
-            (Some(sight), Stands::Mapped(_)) => sight
-                .normal_at_rest(normal, seen)
+        hit: &Hit,
+        sight: Option<&Sight>,
+        [seen, direction]: [DVec3; 2],
+        (distance, wires): (f64, bool),
+    ) -> Meeting<'_> {
+        let is_mapped = matches!(self.stands, Stands::Mapped(_));
+        let lit = match sight {
+            Some(sight) if is_mapped => sight
+                .normal_at_rest(hit.normal, seen)
                 .map(|normal| normal.dot(sight.ray(seen).direction)),
-            _ => unit(normal).map(|normal| normal.dot(direction)),
+            _ => unit(hit.normal).map(|normal| normal.dot(direction)),
         };
-        Some(Meeting {
-            distance: distance / stretch,
-            paint,
+        let triangle = match (&self.geometry, hit.corners) {
+            (Geometry::Mesh(caster), Some(corners)) if wires && is_mapped => {
+                // A mesh holds no index beyond its vertices.
+                Some(corners.map(|corner| caster.mesh().positions()[corner as usize]))
+            }
+            _ => None,
+        };
+        Meeting {
+            distance,
+            paint: &self.paint,
             brightness: match lit {
-                Some(cosine) if !paint.unlit => {
+                Some(cosine) if !self.paint.unlit => {
                     AMBIENT + (1.0 - AMBIENT) * cosine.abs().min(1.0) as f32
                 }
                 _ => 1.0,
             },
-            texture,
-            vertex_color,
+            texture: hit.texture,
+            vertex_color: hit.vertex_color,
             triangle,
-        })
+        }
     }
 }
 
-/// The same of a surface that has no corners.
-fn smooth(hit: SmoothHit) -> (f64, DVec3, DVec2, Vec4) {
-    (hit.distance, hit.normal, hit.texture, Vec4::ONE)
+/// The hit of a surface that has no corners.
+fn smooth(hit: SmoothHit) -> Hit {
+    Hit {
+        distance: hit.distance,
+        normal: hit.normal,
+        texture: hit.texture,
+        vertex_color: Vec4::ONE,
+        corners: None,
+    }
 }
 
 /// Normal, texture coordinates and colour between the corners of a triangle.

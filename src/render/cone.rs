@@ -1,68 +1,120 @@
 //! Which part of the sky a ball takes up, so that rays beside it are told at once.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
+
+use super::tree::Bounds;
+use crate::spacetime::unit;
 
 /// A body is within this part of the ball that is looked for.
 const RADIUS_MARGIN: f64 = 1.0 + 1e-9;
 
-/// What roundings may do to one side of the inequality, relative to its terms: a unit vector is known to
-/// `1e-16`.
-const ROUNDING: f64 = 1e-12;
+/// What roundings of places may do to a ball, relative to how far they are from where they are measured.
+const PLACE_MARGIN: f64 = 8.0 * f64::EPSILON;
 
-/// A circle on the sky: all unit directions `s` with `s . axis >= least`.
+/// How far roundings of unit vectors may move what is seen, in radians.
+const SKY_MARGIN: f64 = 1e-14;
+
+/// A circle on the sky and what it holds, or the whole sky: unit vectors that are not farther than `chord` from `middle`.
 ///
-/// Not a unit axis: a moving observer sees a circle wherever one at rest does (Penrose 1959), and so the
-/// inequality stays linear.
+/// The chord, not the cosine, which knows nothing of circles smaller than 1e-8.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cone {
-    axis: DVec3,
-    least: f64,
+    middle: DVec3,
+    chord: f64,
 }
 
 impl Cone {
+    const WHOLE_SKY: Self = Self {
+        middle: DVec3::ZERO,
+        chord: 2.0,
+    };
+
     /// All directions from `eye` to the ball; the whole sky from within it.
     pub(super) fn of_ball(eye: DVec3, center: DVec3, radius: f64) -> Self {
-        let to_center = center - eye;
-        let distance = to_center.length();
-        let sine = radius * RADIUS_MARGIN / distance;
-        if !(sine < 1.0) {
-            return Self {
-                axis: DVec3::ZERO,
-                least: -1.0,
-            };
-        }
-        Self {
-            axis: to_center / distance,
-            least: ((1.0 - sine) * (1.0 + sine)).sqrt(),
+        let half = half_angle(eye, center, radius);
+        match (half, unit(center - eye)) {
+            (Some(half), Some(middle)) => Self::new(middle, half),
+            _ => Self::WHOLE_SKY,
         }
     }
 
-    /// The same for an observer who moves along `along` with `rapidity`, and whose axes are then turned.
+    /// The same for an observer at `eye` who moves along the unit vector `along` with `rapidity`, in axes that are not
+    /// turned.
     ///
-    /// A direction `s` in motion is `v / r` at rest, `v = s_across + n (gamma n.s - gamma beta)`,
-    /// `r = gamma - gamma beta n.s` (see [`super::sight::Sight`]): `v . axis >= r least` is linear in `s`.
-    pub(super) fn aberrated(
-        &self,
+    /// # Derivation
+    ///
+    /// A moving observer sees a circle wherever one at rest does (Penrose 1959), and the tangent of half the angle from the
+    /// direction of motion is `exp(-rapidity)` times what it is at rest. So the circle's ends on the great circle through
+    /// the direction of motion are the ends of what is seen. Angles are measured from ahead or from behind, whichever
+    /// is closer: behind, what is seen magnifies all roundings of an angle that is measured from ahead.
+    pub(super) fn of_moving(
+        eye: DVec3,
         along: DVec3,
         rapidity: f64,
-        boosted_to_observer: DMat3,
+        (center, radius): (DVec3, f64),
     ) -> Self {
-        let (sinh, cosh) = (rapidity.sinh(), rapidity.cosh());
-        let axis_along = along.dot(self.axis);
-        let axis_across = self.axis - along * axis_along;
-        let boosted = axis_across + along * (cosh * axis_along + sinh * self.least);
+        let Some(half) = half_angle(eye, center, radius) else {
+            return Self::WHOLE_SKY;
+        };
+        let to_center = center - eye;
+        let is_ahead = to_center.dot(along) >= 0.0;
+        let (pole, shrink) = match is_ahead {
+            true => (along, (-rapidity).exp()),
+            false => (-along, rapidity.exp()),
+        };
+        let across = pole.cross(to_center).cross(pole);
+        let from_pole = across.length().atan2(to_center.dot(pole));
+        // From -pi/2 to pi, whose halves have no sense to lose.
+        let seen = |angle: f64| 2.0 * ((angle / 2.0).sin() * shrink).atan2((angle / 2.0).cos());
+        let half = half + from_pole * PLACE_MARGIN;
+        let ends = [seen(from_pole - half), seen(from_pole + half)];
+        let (sin, cos) = ((ends[0] + ends[1]) / 2.0).sin_cos();
+        // A ball that is straight ahead has its middle there.
+        let side = unit(across).unwrap_or(DVec3::ZERO);
+        Self::new(pole * cos + side * sin, (ends[1] - ends[0]) / 2.0)
+    }
+
+    fn new(middle: DVec3, half: f64) -> Self {
+        let half = half + SKY_MARGIN;
         Self {
-            axis: boosted_to_observer * boosted,
-            least: sinh * axis_along + cosh * self.least,
+            middle,
+            chord: 2.0 * (half / 2.0).min(1.6).sin(),
+        }
+    }
+
+    /// The same on a sky that `turn` turns.
+    pub(super) fn turned(self, turn: impl Fn(DVec3) -> DVec3) -> Self {
+        Self {
+            middle: turn(self.middle),
+            ..self
         }
     }
 
     /// Whether the unit vector `direction` may be within; if not, it is not.
     pub(super) fn may_hold(&self, direction: DVec3) -> bool {
-        let excess = direction.dot(self.axis) - self.least;
         // Also where very fast motion makes infinities, and no number of their difference.
-        !(excess < -ROUNDING * (self.axis.abs().element_sum() + self.least.abs()))
+        !(direction.distance_squared(self.middle) > self.chord * self.chord)
     }
+
+    /// A box around all unit vectors within.
+    pub(super) fn bounds(&self) -> Bounds {
+        let chord = if self.chord.is_finite() && self.middle.is_finite() {
+            self.chord
+        } else {
+            return Self::WHOLE_SKY.bounds();
+        };
+        Bounds {
+            low: self.middle - chord * RADIUS_MARGIN,
+            high: self.middle + chord * RADIUS_MARGIN,
+        }
+    }
+}
+
+/// Half the angle that a ball takes up; none from within it.
+fn half_angle(eye: DVec3, center: DVec3, radius: f64) -> Option<f64> {
+    let rounded = (center.abs() + eye.abs()).element_sum() * PLACE_MARGIN;
+    let sine = (radius * RADIUS_MARGIN + rounded) / (center - eye).length();
+    (sine < 1.0).then(|| sine.asin())
 }
 
 #[cfg(test)]
@@ -80,28 +132,52 @@ mod tests {
         assert!(inside.may_hold(DVec3::NEG_X));
     }
 
+    /// Rays that meet a ball at its rim, and beside it, at all speeds, ahead and behind: the rim is held, and of what is
+    /// beside it no more than the margins.
     #[test]
     fn moving_circles_are_aberrated_by_the_half_angle() {
-        for rapidity in [0.0_f64, 0.5, 3.0, 10.0] {
-            let cone = Cone::of_ball(DVec3::ZERO, DVec3::new(6.0, 0.0, 8.0), 2.0);
-            let moving = cone.aberrated(DVec3::Z, rapidity, DMat3::IDENTITY);
-            let (center, half) = (0.6f64.asin(), 0.2f64.asin());
-            for (angle, held) in [
-                (center - 1.001 * half, false),
-                (center - 0.999 * half, true),
-                (center + 0.999 * half, true),
-                (center + 1.001 * half, false),
+        let balls = [
+            (DVec3::new(6.0, 0.0, 8.0), 2.0),
+            (DVec3::new(6.0, 0.0, -8.0), 2.0),
+            (DVec3::new(3e-9, 0.0, -10.0), 2e-9),
+            (DVec3::new(0.0, 0.0, 10.0), 3.0),
+            (DVec3::new(0.0, 0.0, -10.0), 3.0),
+            (DVec3::new(1e-3, 0.0, 10.0), 9.0),
+        ];
+        for (rapidity, (center, radius)) in [0.0_f64, 0.5, 3.0, 10.0, 18.0, 30.0, 350.0]
+            .into_iter()
+            .flat_map(|rapidity| balls.map(|ball| (rapidity, ball)))
+        {
+            let moving = Cone::of_moving(DVec3::ZERO, DVec3::Z, rapidity, (center, radius));
+            let distance = center.length();
+            let half = (radius / distance).asin();
+            // From behind where that is closer, so that the test knows small angles as well.
+            let sign = center.z.signum();
+            let middle = center.x.atan2(sign * center.z);
+            for (part, held) in [
+                (-1.001, false),
+                (-0.999, true),
+                (0.999, true),
+                (1.001, false),
             ] {
-                let seen = 2.0 * ((angle / 2.0).tan() * (-rapidity).exp()).atan();
-                let direction = DVec3::new(seen.sin(), 0.0, seen.cos());
-                let may = moving.may_hold(direction);
-                // Faster, the whole circle is as small as the margin for roundings.
-                let sure = rapidity <= 3.0;
-                assert!(may == held || may && !sure, "{rapidity} {angle}");
+                let seen = |part: f64| {
+                    let angle = middle + part * half;
+                    2.0 * ((angle / 2.0).tan() * (-sign * rapidity).exp()).atan()
+                };
+                let direction = DVec3::new(seen(part).sin(), 0.0, sign * seen(part).cos());
+                // Where what is seen of a thousandth of the circle is no more than the roundings.
+                let sure = held || (seen(part) - seen(part * 0.999)).abs() > 1e-12;
+                assert!(
+                    moving.may_hold(direction) == held || !sure,
+                    "{rapidity} {center} {part}"
+                );
+                let bounds = moving.bounds();
+                let inside =
+                    direction.cmpge(bounds.low).all() && direction.cmple(bounds.high).all();
+                assert!(inside || !held, "{rapidity} {center} {part}");
             }
         }
-        let cone = Cone::of_ball(DVec3::ZERO, DVec3::X, 0.5);
-        let fastest = cone.aberrated(DVec3::Z, 700.0, DMat3::IDENTITY);
+        let fastest = Cone::of_moving(DVec3::ZERO, DVec3::Z, 700.0, (DVec3::X, 0.5));
         assert!(fastest.may_hold(DVec3::Z), "what lies beside is seen ahead");
     }
 }

@@ -3,7 +3,8 @@
 use glam::{DVec2, DVec3, Vec3};
 
 use super::Camera;
-use super::body::{AMBIENT, Meeting, Sitter};
+use super::body::{AMBIENT, Meeting};
+use super::crowd::Crowd;
 
 /// Most surfaces one ray of light is followed through.
 const MOST_LAYERS: usize = 64;
@@ -28,9 +29,8 @@ const HALF_WIRE: f64 = 0.6;
 
 /// All that decides on the colour of a direction.
 pub(super) struct Look<'a> {
-    pub(super) eye: DVec3,
-    pub(super) sitters: Vec<Sitter<'a>>,
-    pub(super) ghosts: Vec<Sitter<'a>>,
+    pub(super) crowd: Crowd<'a>,
+    pub(super) ghosts: Crowd<'a>,
     pub(super) ghost_colors: Vec<Vec3>,
     pub(super) background: Vec3,
     /// The colour of wires, and how they come to be on the picture.
@@ -58,14 +58,12 @@ impl Look<'_> {
     /// The linear colour that is seen at a place of the picture, in the direction `seen`.
     fn light(&self, place: DVec2, seen: DVec3) -> Vec3 {
         let (mut light, distance) = self.solid_light(place, seen);
-        for (ghost, color) in self.ghosts.iter().zip(&self.ghost_colors) {
-            if let Some(meeting) = ghost.meeting(self.eye, seen, 0.0, f64::MAX, false) {
-                let grazing = (1.0 - meeting.brightness) / (1.0 - AMBIENT);
-                let opacity = GHOST[0] + GHOST[1] * grazing * grazing;
-                let behind = meeting.distance > distance;
-                let veiled = if behind { GHOST_BEHIND } else { 1.0 };
-                light = light.lerp(*color, opacity * veiled);
-            }
+        for (ghost, meeting) in self.ghosts.all(seen) {
+            let grazing = (1.0 - meeting.brightness) / (1.0 - AMBIENT);
+            let opacity = GHOST[0] + GHOST[1] * grazing * grazing;
+            let behind = meeting.distance > distance;
+            let veiled = if behind { GHOST_BEHIND } else { 1.0 };
+            light = light.lerp(self.ghost_colors[ghost], opacity * veiled);
         }
         light
     }
@@ -77,21 +75,20 @@ impl Look<'_> {
         let mut beyond = 0.0;
         let mut first = f64::MAX;
         for _ in 0..MOST_LAYERS {
-            let nearest = nearest(
-                &self.sitters,
-                self.eye,
-                seen,
-                beyond,
-                f64::MAX,
-                self.wires.is_some(),
-            );
+            let nearest = self
+                .crowd
+                .nearest(seen, beyond, f64::MAX, self.wires.is_some());
             let Some(meeting) = nearest else {
                 return (light + self.background * clearness, first);
             };
             let Meeting { paint, texture, .. } = meeting;
             let (mut color, mut opacity) = paint.color_at(texture, meeting.vertex_color);
             if let (Some((wire, camera)), Some(triangle)) = (self.wires, meeting.triangle)
-                && is_on_edge(camera, triangle.map(|corner| corner - self.eye), place)
+                && is_on_edge(
+                    camera,
+                    triangle.map(|corner| corner - self.crowd.eye()),
+                    place,
+                )
             {
                 // Not opaque: where triangles are smaller than pixels all would be wire.
                 (color, opacity) = (color.lerp(wire, WIRE), opacity.max(WIRE));
@@ -108,23 +105,6 @@ impl Look<'_> {
         }
         (light, first)
     }
-}
-
-/// The first thing that a ray meets, farther than `beyond` and not as far as `limit`.
-pub(super) fn nearest<'a>(
-    sitters: &[Sitter<'a>],
-    eye: DVec3,
-    seen: DVec3,
-    beyond: f64,
-    limit: f64,
-    wires: bool,
-) -> Option<Meeting<'a>> {
-    sitters
-        .iter()
-        .fold(None, |nearest: Option<Meeting>, sitter| {
-            let limit = nearest.as_ref().map_or(limit, |nearest| nearest.distance);
-            sitter.meeting(eye, seen, beyond, limit, wires).or(nearest)
-        })
 }
 
 /// Whether a place of the picture is on an edge of a triangle, given by its corners from the eye.

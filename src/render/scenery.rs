@@ -5,9 +5,10 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::body::{Body, Geometry, Sitter, Stands};
+use super::body::{Body, Geometry, Stands};
 use super::caster::Caster;
-use super::look::{Look, nearest};
+use super::crowd::Crowd;
+use super::look::Look;
 use super::paint::Paint;
 use super::picture::{Picture, encoded};
 use super::sphere::Ball;
@@ -240,9 +241,8 @@ impl Scenery {
         options: PictureOptions,
     ) -> Look<'a> {
         Look {
-            eye: viewpoint.eye(),
-            sitters: sitters(self.bodies.iter(), viewpoint),
-            ghosts: sitters(self.ghosts.iter().map(|(body, _)| body), viewpoint),
+            crowd: Crowd::new(self.bodies.iter(), viewpoint),
+            ghosts: Crowd::new(self.ghosts.iter().map(|(body, _)| body), viewpoint),
             ghost_colors: self.ghosts.iter().map(|&(_, color)| color).collect(),
             background: options.background.linear().into(),
             wires: options
@@ -251,19 +251,20 @@ impl Scenery {
         }
     }
 
-    /// Draws lines that stand in the observer's frame onto a picture that `camera` took; what is behind
-    /// something is faint.
+    /// Draws lines that stand in the observer's frame onto a picture that `camera` took, those of each colour over those
+    /// before; what is behind something is faint.
     pub fn draw(
         &self,
         picture: &mut Picture,
         camera: &Camera,
         viewpoint: Viewpoint,
-        strokes: &Strokes<DVec3>,
+        strokes: &[Strokes<DVec3>],
     ) {
-        let eye = viewpoint.eye();
-        let sitters = sitters(self.bodies.iter(), viewpoint);
-        let hidden = |seen, distance| nearest(&sitters, eye, seen, 0.0, distance, false).is_some();
-        picture.draw_in_space(strokes, camera, eye, hidden);
+        let crowd = Crowd::new(self.bodies.iter(), viewpoint);
+        let hidden = |seen, distance| crowd.nearest(seen, 0.0, distance, false).is_some();
+        for strokes in strokes {
+            picture.draw_in_space(strokes, camera, viewpoint.eye(), hidden);
+        }
     }
 }
 
@@ -295,13 +296,6 @@ impl Viewpoint<'_> {
             Viewpoint::Outside(place) => place,
         }
     }
-}
-
-fn sitters<'a>(bodies: impl Iterator<Item = &'a Body>, viewpoint: Viewpoint) -> Vec<Sitter<'a>> {
-    let eye = viewpoint.eye();
-    bodies
-        .map(|body| Sitter::new(body, eye, viewpoint))
-        .collect()
 }
 
 #[cfg(test)]

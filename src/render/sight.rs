@@ -86,11 +86,13 @@ impl Sight {
     /// The part of the observer's sky that a ball takes up, given in the rest frame.
     pub(super) fn cone(&self, center: DVec3, radius: f64) -> Cone {
         let boosted_to_observer = self.observer_to_boosted.transpose();
-        Cone::of_ball(self.observer_rest, center, radius).aberrated(
+        Cone::of_moving(
+            self.observer_rest,
             self.along,
             self.rapidity,
-            boosted_to_observer,
+            (center, radius),
         )
+        .turned(|direction| boosted_to_observer * direction)
     }
 
     /// The unit normal at rest of a surface that has the normal `normal` where it is seen, in the unit

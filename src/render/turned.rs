@@ -98,7 +98,8 @@ fn meetings(band: &Band, start: DVec3, direction: DVec3) -> [Option<f64>; 2] {
 mod tests {
     use super::*;
     use crate::mesh::{Appearance, Shape};
-    use crate::render::caster::{Caster, Ray};
+    use crate::render::caster::Caster;
+    use crate::render::ray::Ray;
     use glam::DQuat;
 
     /// Against facets within `1.5 (1 - cos(pi / 800))`, the 1.5 being the scale: where a ray comes in at a cosine of

@@ -15,6 +15,7 @@ pub use json::SceneError;
 pub use marker::{MarkerRadius, MarkerRadiusError};
 pub use tolerance::{Tolerance, ToleranceError};
 
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -149,14 +150,12 @@ impl Scene {
         if objects.is_empty() {
             return Err(InvalidScene::NoObjects);
         }
+        let mut names = HashSet::with_capacity(objects.len());
         for (index, object) in objects.iter().enumerate() {
             if object.name.is_empty() {
                 return Err(InvalidScene::EmptyName(index));
             }
-            if objects[..index]
-                .iter()
-                .any(|other| other.name == object.name)
-            {
+            if !names.insert(&object.name) {
                 return Err(InvalidScene::RepeatedName(object.name.clone()));
             }
         }

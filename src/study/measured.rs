@@ -72,7 +72,12 @@ pub(super) fn measure(stage: &Stage, wanted: Wanted, triangles: usize, samples: 
             let surface = TrueSurface::of(object);
             let here = photosurface.facts.triangles;
             let places = (samples as f64 * here as f64 / triangles as f64).ceil() as usize;
-            let places = places.max(FEWEST_PLACES);
+            // Where there is no triangle there is no place.
+            let places = if here == 0 {
+                0
+            } else {
+                places.max(FEWEST_PLACES)
+            };
             let found = of_one(&photosurface, &view, surface.as_ref(), places);
             worst = Measured {
                 length: worst.length.max(found.length),

@@ -135,7 +135,7 @@ pub(super) fn ray_costs(
         cameras,
         scenery,
     };
-    let finer = REFERENCE_FINER * finest;
+    let finer = finest.saturating_mul(REFERENCE_FINER);
     let references = [0, 1].map(|number| studio.reference(finer, number));
     done();
     let pictures = Pictures {

@@ -153,8 +153,11 @@ impl<'a> Pieces<'a> {
     /// The largest distance between what is seen and what is drawn, at random places of random pieces.
     fn error(&self, samples: usize) -> f64 {
         let view = &self.unrefined.view;
+        let triangles = self.mesh.triangles();
+        if triangles.is_empty() {
+            return 0.0;
+        }
         let place = |_: usize, random: &mut Random| {
-            let triangles = self.mesh.triangles();
             let corners = triangles[random.below(triangles.len())];
             let mut piece = corners.map(|corner| self.mesh.positions()[corner as usize]);
             for _ in 0..self.levels {

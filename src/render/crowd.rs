@@ -1,0 +1,265 @@
+//! All bodies for the moment of one picture, so that a ray asks only those near its way.
+//!
+//! Bodies that rest in one frame are a group with a tree of their boxes there, along the ray as it is in that frame. What
+//! different groups take up of the sky is a tree of its own.
+
+use glam::DVec3;
+
+use super::Viewpoint;
+use super::body::{Body, Hit, Meeting, Stands};
+use super::cone::Cone;
+use super::ray::Ray;
+use super::sight::Sight;
+use super::tree::{Bounds, Tree};
+use crate::spacetime::WorldLine;
+
+/// A distance at rest that is turned into one that is seen and back may be rounded by this part.
+const THERE_AND_BACK: f64 = 1.0 + 4.0 * f64::EPSILON;
+
+pub(super) struct Crowd<'a> {
+    eye: DVec3,
+    /// Each with how the observer sees it; none from outside, and for what has no motion.
+    bodies: Vec<(&'a Body, Option<Sight>)>,
+    groups: Vec<Group>,
+    /// Of what the groups take up of the sky.
+    sky: Tree,
+}
+
+/// Bodies that follow each other and have one frame.
+struct Group {
+    /// From the observer's frame to that of the bodies' geometry, where they are at rest.
+    sight: Option<Sight>,
+    cone: Cone,
+    /// The number of its first body.
+    first: usize,
+    /// Of bodies, counted from the first.
+    tree: Tree,
+}
+
+/// A ray in the frame of a group.
+struct Path {
+    ray: Ray,
+    /// Distance in the group's frame over distance seen.
+    stretch: f64,
+}
+
+/// What is nearest so far: of several at one distance the first.
+struct Found {
+    distance: f64,
+    body: usize,
+    hit: Hit,
+    direction: DVec3,
+}
+
+impl<'a> Crowd<'a> {
+    pub(super) fn new(bodies: impl Iterator<Item = &'a Body>, viewpoint: Viewpoint) -> Self {
+        let eye = viewpoint.eye();
+        let mut placed = Vec::new();
+        // Where each group begins and the motion of those that are at rest in it.
+        let mut starts: Vec<(usize, Option<WorldLine>)> = Vec::new();
+        for body in bodies {
+            let sight = match (viewpoint, body.stands) {
+                (
+                    Viewpoint::Observer(observer, proper_time),
+                    Stands::AtRest(line) | Stands::Mapped(line),
+                ) => Some(Sight::new(observer, &line, proper_time)),
+                _ => None,
+            };
+            let rests = match (&sight, body.stands) {
+                (Some(_), Stands::AtRest(line)) => Some(line),
+                _ => None,
+            };
+            if starts.last().is_none_or(|&(_, last)| last != rests) {
+                starts.push((placed.len(), rests));
+            }
+            placed.push((body, sight));
+        }
+        let ends = starts.iter().skip(1).map(|start| start.0);
+        let ends = ends.chain([placed.len()]);
+        let groups = starts.iter().zip(ends).map(|(&(start, rests), end)| {
+            let sight = rests.and(placed[start].1);
+            Group::new(eye, sight, start, &placed[start..end])
+        });
+        let groups: Vec<_> = groups.collect();
+        let on_sky: Vec<_> = groups.iter().map(|group| group.cone.bounds()).collect();
+        Self {
+            eye,
+            bodies: placed,
+            groups,
+            sky: Tree::new(&on_sky),
+        }
+    }
+
+    /// From where it is seen, in the observer's frame.
+    pub(super) fn eye(&self) -> DVec3 {
+        self.eye
+    }
+
+    /// The first thing that a ray along `seen` meets, farther than `beyond` and not as far as `limit`, both as seen.
+    pub(super) fn nearest(
+        &self,
+        seen: DVec3,
+        beyond: f64,
+        limit: f64,
+        wires: bool,
+    ) -> Option<Meeting<'a>> {
+        let mut found: Option<Found> = None;
+        self.in_view(seen, |group| {
+            let path = group.path(self.eye, seen);
+            let farthest = found.as_ref().map_or(limit, |found| found.distance);
+            let [beyond, rest_limit] = [beyond, farthest].map(|d| path.to_rest(d));
+            // Including what is as far as what was found: it may be the first.
+            let rest_limit = match found {
+                Some(_) => (rest_limit * THERE_AND_BACK).min(f64::MAX),
+                None => rest_limit,
+            };
+            let Some((body, hit)) = group.nearest(&self.bodies, &path.ray, beyond, rest_limit)
+            else {
+                return;
+            };
+            let distance = hit.distance / path.stretch;
+            let is_nearer = found.as_ref().is_none_or(|found| {
+                distance < found.distance || (distance == found.distance && body < found.body)
+            });
+            if is_nearer {
+                found = Some(Found {
+                    distance,
+                    body,
+                    hit,
+                    direction: path.ray.direction(),
+                });
+            }
+        });
+        found.map(|found| self.meeting(&found, seen, wires))
+    }
+
+    /// The first meeting with every body that a ray along `seen` meets, with the number of the body, in their order.
+    pub(super) fn all(&self, seen: DVec3) -> Vec<(usize, Meeting<'a>)> {
+        let mut all = Vec::new();
+        self.in_view(seen, |group| {
+            let path = group.path(self.eye, seen);
+            group.tree.along(&path.ray, f64::MAX, |number| {
+                let body = group.first + number as usize;
+                if let Some(hit) = self.bodies[body].0.cast(&path.ray, 0.0, f64::MAX) {
+                    let found = Found {
+                        distance: hit.distance / path.stretch,
+                        body,
+                        hit,
+                        direction: path.ray.direction(),
+                    };
+                    all.push((body, self.meeting(&found, seen, false)));
+                }
+                f64::MAX
+            });
+        });
+        all.sort_unstable_by_key(|(body, _)| *body);
+        all
+    }
+
+    /// Visits the groups that may be seen in a direction.
+    fn in_view(&self, seen: DVec3, mut visit: impl FnMut(&Group)) {
+        self.sky.holding(seen, |number| {
+            let group = &self.groups[number as usize];
+            if group.cone.may_hold(seen) {
+                visit(group);
+            }
+        });
+    }
+
+    fn meeting(&self, found: &Found, seen: DVec3, wires: bool) -> Meeting<'a> {
+        let (body, sight) = &self.bodies[found.body];
+        body.meeting(
+            &found.hit,
+            sight.as_ref(),
+            [seen, found.direction],
+            (found.distance, wires),
+        )
+    }
+}
+
+impl Group {
+    fn new(
+        eye: DVec3,
+        sight: Option<Sight>,
+        first: usize,
+        bodies: &[(&Body, Option<Sight>)],
+    ) -> Self {
+        // A body of nothing is nowhere, but has its number.
+        let nothing = Bounds {
+            low: eye,
+            high: eye,
+        };
+        let bounds = bodies
+            .iter()
+            .map(|(body, _)| body.geometry.bounds().unwrap_or(nothing));
+        let bounds: Vec<_> = bounds.collect();
+        let tree = Tree::new(&bounds);
+        let (center, radius) = match bodies {
+            // Of what is round the ball is smaller than that around its box.
+            [(body, _)] => body.geometry.ball(),
+            _ => tree.bounds().map_or((eye, 0.0), |bounds| bounds.ball()),
+        };
+        let cone = match &sight {
+            Some(sight) => sight.cone(center, radius),
+            None => Cone::of_ball(eye, center, radius),
+        };
+        Self {
+            sight,
+            cone,
+            first,
+            tree,
+        }
+    }
+
+    fn path(&self, eye: DVec3, seen: DVec3) -> Path {
+        let (origin, direction, stretch) = match &self.sight {
+            Some(sight) => {
+                let ray = sight.ray(seen);
+                (ray.origin, ray.direction, ray.stretch)
+            }
+            None => (eye, seen, 1.0),
+        };
+        Path {
+            ray: Ray::new(origin, direction),
+            stretch,
+        }
+    }
+
+    /// The nearest hit farther than `beyond` and not as far as `limit`, with the number of the body: of several at one
+    /// distance the first.
+    fn nearest(
+        &self,
+        bodies: &[(&Body, Option<Sight>)],
+        ray: &Ray,
+        beyond: f64,
+        limit: f64,
+    ) -> Option<(usize, Hit)> {
+        let mut nearest: Option<(usize, Hit)> = None;
+        self.tree.along(ray, limit, |number| {
+            let body = self.first + number as usize;
+            let farthest = nearest.as_ref().map_or(limit, |(_, hit)| hit.distance);
+            let is_first = nearest.as_ref().is_some_and(|&(first, _)| body < first);
+            // Including what is as far as what was found.
+            let reach = if is_first {
+                farthest.next_up()
+            } else {
+                farthest
+            };
+            match bodies[body].0.cast(ray, beyond, reach) {
+                Some(hit) => {
+                    let distance = hit.distance;
+                    nearest = Some((body, hit));
+                    distance
+                }
+                None => farthest,
+            }
+        });
+        nearest
+    }
+}
+
+impl Path {
+    fn to_rest(&self, seen: f64) -> f64 {
+        (seen * self.stretch).min(f64::MAX)
+    }
+}

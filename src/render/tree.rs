@@ -1,0 +1,438 @@
+//! A tree of boxes: what a ray may meet, and what may hold a point, without asking everything.
+//!
+//! Of a tree that others keep, three things are asked here that `parry3d`'s does not have: it is at most
+//! [`MOST_LEVELS`] deep, whatever lies where; flat boxes are weighed by their area, not their volume, which is nothing; and
+//! bundles of slivers have slanted boxes ([`super::slant`]).
+
+use glam::DVec3;
+
+use super::ray::{Ray, Slabs};
+use super::slant::{Slant, Sliver};
+
+/// Boxes with so many things or fewer are not divided.
+const FEW: usize = 2;
+
+/// Places where a box may be divided, one more than these.
+const BINS: usize = 16;
+
+/// So many levels of a tree are divided where it is best; further ones at the middle of what there is, so that even
+/// 2^32 things need no more than [`MOST_LEVELS`].
+const BEST_LEVELS: usize = 48;
+pub(super) const MOST_LEVELS: usize = BEST_LEVELS + 32;
+
+/// Boxes are larger by this part of all lengths that take part: a ray that the test of a triangle takes, roundings and all,
+/// must not be lost at a box.
+const MARGIN: f64 = 64.0 * f64::EPSILON;
+
+/// Boxes that are entered farther away than what was found, by no more than this part, are looked into:
+/// the distance of a hit with a sliver is rounded by more than that of a box.
+const NEAR_MARGIN: f64 = 1.0 + 1e-12;
+
+/// No slanted box.
+const NONE: u32 = u32::MAX;
+
+/// A box along the axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bounds {
+    pub(super) low: DVec3,
+    pub(super) high: DVec3,
+}
+
+/// Boxes within boxes, around things that have numbers.
+pub(super) struct Tree {
+    /// The first is around everything; there is none if there is nothing.
+    nodes: Vec<Node>,
+    slants: Vec<Slant>,
+    /// Numbers of things, those of a node beside each other.
+    things: Vec<u32>,
+    middle: DVec3,
+    /// From corner to corner.
+    size: f64,
+}
+
+struct Node {
+    bounds: Bounds,
+    slant: u32,
+    /// The first of its things, or of its two nodes if it has no things.
+    first: u32,
+    count: u32,
+}
+
+/// Triangles whose slivers get slanted boxes.
+struct Slivers<'a> {
+    corners: &'a dyn Fn(u32) -> [DVec3; 3],
+    /// For every triangle.
+    slivers: Vec<Option<Sliver>>,
+}
+
+impl Bounds {
+    const NOTHING: Self = Self {
+        low: DVec3::INFINITY,
+        high: DVec3::NEG_INFINITY,
+    };
+
+    pub(super) fn around(places: impl Iterator<Item = DVec3>) -> Self {
+        places.fold(Self::NOTHING, |bounds, place| Self {
+            low: bounds.low.min(place),
+            high: bounds.high.max(place),
+        })
+    }
+
+    pub(super) fn of_all(all: impl Iterator<Item = Self>) -> Self {
+        all.fold(Self::NOTHING, Self::with)
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+        }
+    }
+
+    pub(super) fn middle(&self) -> DVec3 {
+        // Halves first: the sum of two large numbers may be none.
+        self.low / 2.0 + self.high / 2.0
+    }
+
+    /// Centre and radius of a ball around it.
+    pub(super) fn ball(&self) -> (DVec3, f64) {
+        (self.middle(), self.low.distance(self.high) / 2.0)
+    }
+
+    /// Half of its surface; of what is flat, its area.
+    pub(super) fn half_area(&self) -> f64 {
+        let size = self.high - self.low;
+        size.x * size.y + size.y * size.z + size.z * size.x
+    }
+
+    fn holds(&self, place: DVec3) -> bool {
+        place.cmpge(self.low).all() && place.cmple(self.high).all()
+    }
+}
+
+impl Tree {
+    /// A tree of things of any kind.
+    pub(super) fn new(bounds: &[Bounds]) -> Self {
+        Self::of(bounds, None)
+    }
+
+    /// A tree of triangles, fewer than 2^32.
+    pub(super) fn of_triangles(count: usize, corners: &dyn Fn(u32) -> [DVec3; 3]) -> Self {
+        let all = (0..count as u32).map(corners);
+        let bounds: Vec<_> = all.clone().map(|c| Bounds::around(c.into_iter())).collect();
+        let slivers: Vec<_> = all.map(Sliver::of).collect();
+        let slivers = Slivers { corners, slivers };
+        Self::of(&bounds, Some(&slivers))
+    }
+
+    fn of(bounds: &[Bounds], slivers: Option<&Slivers>) -> Self {
+        let whole = Bounds::of_all(bounds.iter().copied());
+        let mut tree = Self {
+            nodes: Vec::new(),
+            slants: Vec::new(),
+            things: (0..bounds.len() as u32).collect(),
+            middle: whole.middle(),
+            size: (whole.high - whole.low).length(),
+        };
+        if bounds.is_empty() {
+            return tree;
+        }
+        let mut things = std::mem::take(&mut tree.things);
+        tree.nodes.push(Node::undivided());
+        let mut undivided = vec![(0, 0..things.len(), 0)];
+        while let Some((node, range, level)) = undivided.pop() {
+            let own = &mut things[range.clone()];
+            let around = Bounds::of_all(own.iter().map(|&thing| bounds[thing as usize]));
+            let slant = slivers.and_then(|slivers| slivers.slant(own, tree.middle, &around));
+            let made = &mut tree.nodes[node];
+            made.bounds = around;
+            if let Some(slant) = slant {
+                made.slant = tree.slants.len() as u32;
+                tree.slants.push(slant);
+            }
+            if own.len() <= FEW {
+                (made.first, made.count) = (range.start as u32, own.len() as u32);
+                continue;
+            }
+            let middle = range.start + divide(own, bounds, level);
+            let first = tree.nodes.len();
+            tree.nodes[node].first = first as u32;
+            tree.nodes.extend([Node::undivided(), Node::undivided()]);
+            undivided.push((first, range.start..middle, level + 1));
+            undivided.push((first + 1, middle..range.end, level + 1));
+        }
+        tree.things = things;
+        tree
+    }
+
+    /// A box around everything, if there is something.
+    pub(super) fn bounds(&self) -> Option<Bounds> {
+        self.nodes.first().map(|node| node.bounds)
+    }
+
+    /// Visits everything whose box a ray enters before `limit`, what is nearer mostly first; what `visit` gives is the limit
+    /// from then on.
+    pub(super) fn along(&self, ray: &Ray, limit: f64, mut visit: impl FnMut(u32) -> f64) {
+        let reach = (ray.origin() - self.middle).length() + self.size;
+        let margin = reach * MARGIN;
+        let slabs = Slabs::new(ray.origin(), ray.direction(), margin);
+        let enters = |number: u32| {
+            #[cfg(test)]
+            counted::BOXES.set(counted::BOXES.get() + 1);
+            let node = &self.nodes[number as usize];
+            let near = slabs.enters(node.bounds.low, node.bounds.high)?;
+            match node.slant {
+                NONE => Some(near),
+                slant => {
+                    let slant = &self.slants[slant as usize];
+                    Some(near.max(slant.enters(ray, self.middle, margin)?))
+                }
+            }
+        };
+        let mut limit = limit;
+        // One for each level that is being looked into: never more than there are levels.
+        let mut waiting = [(0, 0.0); MOST_LEVELS + 1];
+        let mut count = 0;
+        let mut here = (!self.nodes.is_empty()).then_some(0);
+        here = here.filter(|&root| enters(root).is_some_and(|near| near <= limit));
+        loop {
+            let Some(number) = here else {
+                if count == 0 {
+                    return;
+                }
+                count -= 1;
+                let (number, near) = waiting[count];
+                here = (near <= limit * NEAR_MARGIN).then_some(number);
+                continue;
+            };
+            here = None;
+            let node = &self.nodes[number as usize];
+            for &thing in &self.things[node.own()] {
+                limit = visit(thing);
+            }
+            if node.count > 0 {
+                continue;
+            }
+            let open = |number| {
+                let near = enters(number)?;
+                (near <= limit * NEAR_MARGIN).then_some((number, near))
+            };
+            match (open(node.first), open(node.first + 1)) {
+                (Some(left), Some(right)) => {
+                    let (near, far) = if left.1 <= right.1 {
+                        (left, right)
+                    } else {
+                        (right, left)
+                    };
+                    here = Some(near.0);
+                    waiting[count] = far;
+                    count += 1;
+                }
+                (one, other) => here = one.or(other).map(|(number, _)| number),
+            }
+        }
+    }
+
+    /// Visits everything whose box holds `place`.
+    pub(super) fn holding(&self, place: DVec3, mut visit: impl FnMut(u32)) {
+        let mut waiting = [0; MOST_LEVELS + 1];
+        let mut count = usize::from(!self.nodes.is_empty());
+        while count > 0 {
+            count -= 1;
+            #[cfg(test)]
+            counted::BOXES.set(counted::BOXES.get() + 1);
+            let node = &self.nodes[waiting[count] as usize];
+            if !node.bounds.holds(place) {
+                continue;
+            }
+            self.things[node.own()]
+                .iter()
+                .for_each(|&thing| visit(thing));
+            if node.count == 0 {
+                // In place of the node itself: one more for each level.
+                waiting[count] = node.first;
+                waiting[count + 1] = node.first + 1;
+                count += 2;
+            }
+        }
+    }
+}
+
+impl Node {
+    fn undivided() -> Self {
+        Self {
+            bounds: Bounds::NOTHING,
+            slant: NONE,
+            first: 0,
+            count: 0,
+        }
+    }
+
+    /// Where its things are; none of a node that is divided.
+    fn own(&self) -> std::ops::Range<usize> {
+        match self.count {
+            0 => 0..0,
+            count => self.first as usize..(self.first + count) as usize,
+        }
+    }
+}
+
+impl Slivers<'_> {
+    /// The slanted box of triangles, if most of them are slivers and it pays.
+    fn slant(&self, triangles: &[u32], middle: DVec3, plain: &Bounds) -> Option<Slant> {
+        let slivers = triangles.iter().filter_map(|&t| self.slivers[t as usize]);
+        if 2 * slivers.clone().count() < triangles.len() {
+            return None;
+        }
+        let corners = triangles.iter().map(|&triangle| (self.corners)(triangle));
+        Slant::around(corners, slivers, middle, plain)
+    }
+}
+
+/// Divides things in two, by the surface of the boxes on either side times what they hold; how many come first, at
+/// least one and not all.
+fn divide(things: &mut [u32], bounds: &[Bounds], level: usize) -> usize {
+    let middle = |thing: u32| bounds[thing as usize].middle();
+    let middles = Bounds::around(things.iter().map(|&thing| middle(thing)));
+    let axis = (middles.high - middles.low).max_position();
+    let (start, length) = (middles.low[axis], middles.high[axis] - middles.low[axis]);
+    // What is no number is in the first bin, and nothing beyond the last.
+    let bin = |thing: u32| {
+        let part = (middle(thing)[axis] - start) / length;
+        ((part * BINS as f64) as usize).min(BINS - 1)
+    };
+    if level < BEST_LEVELS
+        && let Some(last_left) = best_bin(things, bounds, bin)
+    {
+        return partition(things, |thing| bin(thing) <= last_left);
+    }
+    let half = things.len() / 2;
+    things.select_nth_unstable_by(half, |&a, &b| {
+        let order = middle(a)[axis].total_cmp(&middle(b)[axis]);
+        order.then(a.cmp(&b))
+    });
+    half
+}
+
+/// The last bin on the left where a division is best; none if all things are in one bin.
+fn best_bin(things: &[u32], bounds: &[Bounds], bin: impl Fn(u32) -> usize) -> Option<usize> {
+    let mut bins = [(Bounds::NOTHING, 0_usize); BINS];
+    for &thing in things {
+        let (around, count) = &mut bins[bin(thing)];
+        *around = around.with(bounds[thing as usize]);
+        *count += 1;
+    }
+    let cost = |bins: &[(Bounds, usize)]| {
+        let count: usize = bins.iter().map(|bin| bin.1).sum();
+        let around = Bounds::of_all(bins.iter().filter(|bin| bin.1 > 0).map(|bin| bin.0));
+        (count > 0).then(|| around.half_area() * count as f64)
+    };
+    let divisions = (1..BINS).filter_map(|first_right| {
+        let (left, right) = bins.split_at(first_right);
+        Some((first_right - 1, cost(left)? + cost(right)?))
+    });
+    let best = divisions.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(best.0)
+}
+
+/// Puts what `is_left` says first, both in their order; how many these are.
+fn partition(things: &mut [u32], is_left: impl Fn(u32) -> bool) -> usize {
+    let right: Vec<u32> = things.iter().copied().filter(|&t| !is_left(t)).collect();
+    let mut left = 0;
+    for index in 0..things.len() {
+        if is_left(things[index]) {
+            things[left] = things[index];
+            left += 1;
+        }
+    }
+    things[left..].copy_from_slice(&right);
+    left
+}
+
+/// What tests count.
+#[cfg(test)]
+pub(super) mod counted {
+    use std::cell::Cell;
+
+    thread_local! {
+        pub(in super::super) static BOXES: Cell<u64> = const { Cell::new(0) };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn depth(tree: &Tree) -> usize {
+        let mut deepest = 0;
+        let mut waiting = vec![(0, 1)];
+        while let Some((number, level)) = waiting.pop() {
+            deepest = deepest.max(level);
+            let node: &Node = &tree.nodes[number];
+            if node.count == 0 {
+                let first = node.first as usize;
+                waiting.extend([(first, level + 1), (first + 1, level + 1)]);
+            }
+        }
+        deepest
+    }
+
+    fn cube(middle: DVec3, half: f64) -> Bounds {
+        Bounds {
+            low: middle - half,
+            high: middle + half,
+        }
+    }
+
+    /// However things lie: beside each other, each 1.01 times as far away as the last, all at one place, infinite.
+    #[test]
+    fn no_tree_is_deeper_than_its_limit() {
+        let count = 30_000;
+        let places: [&dyn Fn(i32) -> f64; 4] =
+            [&|k| f64::from(k), &|k| 1.01f64.powi(k), &|_| 1.0, &|k| {
+                if k % 2 == 0 { f64::INFINITY } else { f64::NAN }
+            }];
+        for (which, place) in places.into_iter().enumerate() {
+            let all: Vec<_> = (0..count)
+                .map(|k| cube(DVec3::new(place(k), 0.0, 0.0), 0.1))
+                .collect();
+            let tree = Tree::new(&all);
+            assert!(depth(&tree) <= MOST_LEVELS + 1, "{which}: {}", depth(&tree));
+            let mut things = tree.things.clone();
+            things.sort_unstable();
+            assert!(things.into_iter().eq(0..count as u32));
+            let ray = Ray::new(DVec3::new(0.0, 0.0, 5.0), DVec3::NEG_Z);
+            tree.along(&ray, f64::MAX, |_| f64::MAX);
+            tree.holding(DVec3::X, |_| ());
+        }
+    }
+
+    /// Things far apart: a ray and a place are held against a number of boxes that grows like the number of levels.
+    #[test]
+    fn work_grows_like_the_number_of_levels() {
+        for side in [10, 30, 100] {
+            let all = (0..side * side).map(|k| {
+                let place = DVec3::new(f64::from(k % side), f64::from(k / side), 0.0);
+                cube(3.0 * place, 1.0)
+            });
+            let tree = Tree::new(&all.collect::<Vec<_>>());
+            let levels = depth(&tree) as u64;
+            assert!(levels < 25, "{levels}");
+            for k in 0..side * side {
+                let place = 3.0 * DVec3::new(f64::from(k % side), f64::from(k / side), 0.0);
+                counted::BOXES.set(0);
+                let mut found = Vec::new();
+                tree.holding(place, |thing| found.push(thing));
+                assert!(found.contains(&(k as u32)) && found.len() <= FEW);
+                let ray = Ray::new(place + DVec3::Z * 50.0, DVec3::NEG_Z);
+                let mut met = Vec::new();
+                tree.along(&ray, f64::MAX, |thing| {
+                    met.push(thing);
+                    f64::MAX
+                });
+                assert!(met.contains(&(k as u32)) && met.len() <= FEW);
+                assert!(counted::BOXES.get() <= 6 * levels);
+            }
+        }
+    }
+}
