@@ -33,7 +33,8 @@ pub use io::{
     Access, AccessorProblem, DocumentProblem, Export, FileFindings, Findings, Format, GltfFile,
     GltfOutput, LoadError, NodeProblem, Note, ObjProblem, Playback, ReadError, Report, StageTime,
     Target, UriProblem, WriteError, abandon_writes, destination, load_models, read_gltf_bytes,
-    read_model, read_whole, write_glb, write_gltf, write_ply, write_whole, write_whole_target,
+    read_model, read_whole, replaced_data, write_glb, write_gltf, write_ply, write_whole,
+    write_whole_gltf, write_whole_target,
 };
 pub use light_cone::{PhotosurfaceMap, View};
 pub use mesh::{

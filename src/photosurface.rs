@@ -67,6 +67,10 @@ pub struct Photosurface {
     /// Its geometry in the observer's frame, observer at the origin: the vertices of the part at rest, in
     /// the same order, then those that were added.
     pub mesh: Mesh,
+    /// The smallest and the largest coordinates of all parts of the object at this step, or at all steps where they
+    /// share one mesh. Files with `f32` have positions relative to the middle of that: parts that share a corner have
+    /// the same numbers there.
+    pub around: (DVec3, DVec3),
     /// What else was asked for of its vertices.
     pub vertex_data: VertexData,
     /// What it is made of.
@@ -147,13 +151,9 @@ impl Stage {
         let origins = models.iter().map(|model| model.origin.clone()).collect();
         let mut objects = Vec::with_capacity(models.len());
         for (object, model) in scene.objects().iter().zip(models) {
-            let several = model.parts.len() > 1;
+            let count = model.parts.len();
             let parts = model.parts.into_iter().map(|part| {
-                let name = if several {
-                    names.unique(&format!("{}_{}", object.name, part.name))
-                } else {
-                    names.unique(&object.name)
-                };
+                let name = names.unique(&wanted_name(object, &part, count));
                 (name, part.transformed(&object.model_to_rest()))
             });
             objects.push(Placed {
@@ -186,6 +186,17 @@ impl Stage {
             .objects()
             .iter()
             .zip(self.objects.iter().map(|placed| placed.parts.as_slice()))
+    }
+
+    /// The names of parts that have characters which programs that read files break, each with what it is in files.
+    pub fn replaced_names(&self) -> impl Iterator<Item = (String, &str)> {
+        let all = self.objects().flat_map(|(object, parts)| {
+            let wanted = |part| wanted_name(object, part, parts.len());
+            parts
+                .iter()
+                .map(move |(name, part)| (wanted(part), name.as_str()))
+        });
+        all.filter(|(wanted, _)| names::plain(wanted) != *wanted)
     }
 
     /// The observer's velocity in the rest frame of an object.
@@ -293,6 +304,7 @@ impl Stage {
             vertex_data: VertexData::new(view, surface.part.mesh(), wanted.attributes),
             material: surface.part.material.clone(),
             mesh: surface.seen.mesh,
+            around: surface.around,
         }
     }
 }
@@ -323,6 +335,14 @@ impl Shaped {
                 (name.clone(), made.transformed(&self.model_to_rest))
             });
         made.collect()
+    }
+}
+
+/// How a part of an object of so many parts would be called.
+fn wanted_name(object: &Object, part: &Part, parts: usize) -> String {
+    match parts {
+        1 => object.name.clone(),
+        _ => format!("{}_{}", object.name, part.name),
     }
 }
 

@@ -20,7 +20,9 @@ fn counts_and_sizes_are_told_as_people_say_them() {
     let workplace = Workplace::new();
     workplace.write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     let run = workplace.run("export one.obj -o one.gltf").success();
-    let bytes = workplace.read("one.gltf").len() + workplace.read("one.bin").len();
+    let gltf = workplace.read_json("one.gltf");
+    let data = gltf["buffers"][0]["uri"].as_str().unwrap();
+    let bytes = workplace.read("one.gltf").len() + workplace.read(data).len();
     let summary = format!(
         "one.gltf: 1 photosurface, 1 triangle, {:.1} kB\n",
         bytes as f64 / 1e3

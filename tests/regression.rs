@@ -26,10 +26,13 @@ fn what_a_source_refers_to_is_not_written_over() {
     workplace.write("a.mtl", "newmtl red\nmap_Kd red.png\n");
     workplace.write("red.png", PNG);
     workplace.run("export a.obj -o source.gltf").success();
-    let gltf = workplace.read("source.gltf");
-    std::fs::rename(workplace.path("source.bin"), workplace.path("data.bin")).unwrap();
-    let gltf = String::from_utf8(gltf).unwrap();
-    workplace.write("source.gltf", gltf.replace("source.bin", "data.bin"));
+    let uri = workplace.read_json("source.gltf")["buffers"][0]["uri"].clone();
+    let (old, new) = (uri.as_str().unwrap(), "data-0123abcd.bin");
+    std::fs::rename(workplace.path(old), workplace.path(new)).unwrap();
+    let gltf = String::from_utf8(workplace.read("source.gltf")).unwrap();
+    // Two that share their data: whoever replaces one must not take it from the other.
+    workplace.write("source.gltf", gltf.replace(old, new));
+    workplace.write("data.gltf", gltf.replace(old, new));
     workplace.write(
         "scene.json",
         r#"{ "objects": [ { "name": "a", "file": "source.gltf" }, { "name": "b", "file": "a.obj" } ] }"#,
@@ -38,7 +41,7 @@ fn what_a_source_refers_to_is_not_written_over() {
     let before: Vec<_> = files.iter().map(|file| workplace.read(file)).collect();
     for (input, output) in [
         ("source.gltf", "-o data.gltf"),
-        ("source.gltf", "-o out.glb --report data.bin"),
+        ("source.gltf", "-o out.glb --report data-0123abcd.bin"),
         ("a.obj", "-o out.glb --report a.mtl"),
         ("a.obj", "-o out.glb --report ./red.png"),
         ("scene.json", "-o data.gltf"),

@@ -9,7 +9,7 @@ use super::Status;
 use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, total};
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
-use super::messages::{Verbosity, counted, print};
+use super::messages::{Verbosity, counted, print_if_open, shown};
 
 /// Validate a scene or a mesh, and say what an export would make
 ///
@@ -79,7 +79,7 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
         range.with_context(|| input.place.clone())?;
         let wanted = args.accuracy.wanted_in(format, stage.scene());
         let (stage, predictions) = args.accuracy.within_budget(stage, wanted, verbosity);
-        print(|out| table(&stage, &predictions, out))?;
+        print_if_open(|out| table(&stage, &predictions, out))?;
         if !args.accuracy.will_be_kept(&predictions) {
             status = Status::NotCertified;
         }
@@ -108,7 +108,7 @@ fn table(stage: &Stage, predictions: &[Prediction], out: &mut dyn Write) -> anyh
         writeln!(
             out,
             "{:<20} {:>6} {:>12} {:>13.6e} {:>10.6} {:>12} {:>16} {:>9}",
-            object.name,
+            shown(&object.name),
             parts.len(),
             grouped_number(prediction.triangles_in),
             relative.gamma(),

@@ -15,7 +15,7 @@ use super::args::{Given, InputArgs, ObserverArgs, count, number, refuse, vector,
 use super::camera::{OBSERVER_FOV, fitting_fov, middle_of_sky, rough_places, samples, size};
 use super::cost_tables::{csv_of_meshes, csv_of_rays, tables_of};
 use super::input::{Input, tell_of_missing};
-use super::messages::{Verbosity, grouped, print};
+use super::messages::{Verbosity, grouped, print, print_if_open};
 use super::output::{check_destinations, is_stdout, progress_bar, with_suffix};
 
 /// Show what accuracy costs: triangles, bytes, time and memory of meshes over tolerances, rays and time of pictures
@@ -187,7 +187,7 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     tell(&study, settings.most_triangles, verbosity);
 
     if !to_stdout(&output.json) && !to_stdout(&output.csv) {
-        print(|out| tables_of(&study, out))?;
+        print_if_open(|out| tables_of(&study, out))?;
     }
     // The plot may fail: no file is written before it is there.
     let plot_size = match output.plot_size {

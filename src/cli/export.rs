@@ -1,6 +1,5 @@
 //! `photosurface export`: photosurfaces as meshes.
 
-use std::ffi::OsStr;
 use std::fs;
 use std::io::{IsTerminal, Write, stdout};
 use std::ops::Range;
@@ -12,7 +11,8 @@ use clap::ValueEnum;
 use indicatif::ProgressBar;
 use photosurface::{
     Attribute, Export, Facts, Format, GltfFile, GltfOutput, Playback, Report, Scene, Stage,
-    StageTime, Target, Wanted, WriteError, write_ply, write_whole, write_whole_target,
+    StageTime, Target, Wanted, WriteError, replaced_data, write_ply, write_whole, write_whole_gltf,
+    write_whole_target,
 };
 
 use super::Status;
@@ -20,7 +20,7 @@ use super::accuracy::{AccuracyArgs, DetailArgs, Tally};
 use super::ahead::in_order;
 use super::args::{InputArgs, ObserverArgs, number};
 use super::input::Input;
-use super::messages::{Verbosity, counted, print, size};
+use super::messages::{Verbosity, counted, print, size, stdout_is_closed};
 use super::output::{
     check_destinations, extension, file_for_each, from_first_to_last, is_stdout, progress_bar,
     with_suffix,
@@ -63,7 +63,7 @@ pub(super) struct ExportArgs {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Output")]
 struct OutputArgs {
-    /// Where to write: .glb, .gltf (with a .bin beside it) or .ply (double precision, all in one mesh, the
+    /// Where to write: .glb, .gltf (with its data beside it in NAME-DIGEST.bin) or .ply (double precision, all in one mesh, the
     /// Doppler factor as quality); - writes GLB to stdout [default: NAME_photosurface.glb in this directory]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -158,6 +158,9 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
             .least_size(&stage, if output.split { 1 } else { steps })
             .with_context(of_file)?;
         format.check_range(&stage).with_context(of_file)?;
+        if index == 0 && format != Format::Ply {
+            tell_replaced_names(&stage, &path, args.verbosity);
+        }
         let clock = clock.clone();
         let certified = export(
             args,
@@ -212,6 +215,7 @@ fn export(
         clock,
         tally: Tally::default(),
         reported: report.map(|_| vec![]),
+        data_files: vec![],
     };
     let finish = |work: &Work<'_>| match (report, &work.reported) {
         (Some(path), Some(made)) => write_report(path, &stage, made, &work.clock),
@@ -233,7 +237,7 @@ fn export(
         verbosity.detail(format_args!("{name}: {seconds:.3} s"));
     }
     if !is_stdout(&files[0]) {
-        verbosity.result(summary(files, format, &stage, &work.tally));
+        verbosity.result(summary(files, &work.data_files, &stage, &work.tally));
     }
     Ok(args.accuracy.is_kept(&work.tally, verbosity))
 }
@@ -249,6 +253,8 @@ struct Work<'a> {
     tally: Tally,
     /// For the report, if there is to be one.
     reported: Option<Vec<Facts>>,
+    /// Those beside a `.gltf`.
+    data_files: Vec<PathBuf>,
 }
 
 impl Work<'_> {
@@ -389,6 +395,10 @@ impl OutputArgs {
         );
         let report_to_stdout = self.report.as_deref().is_some_and(is_stdout);
         ensure!(
+            !((to_stdout || report_to_stdout) && stdout_is_closed()),
+            "stdout: it is closed, expected a file or a pipe"
+        );
+        ensure!(
             !(report_to_stdout && levels > 1),
             "--lod writes several reports, they cannot all go to stdout"
         );
@@ -419,14 +429,40 @@ impl OutputArgs {
     }
 }
 
-/// Every file of every level.
+/// Every file of every level that is written over or removed. The data of a `.gltf` has a new name, made of what is in
+/// it; that of the one which is replaced goes.
 fn outputs(levels: &[Level], format: Format) -> impl Iterator<Item = PathBuf> {
     levels.iter().flat_map(move |level| {
-        let binaries = level.files.iter().filter(move |_| format == Format::Gltf);
-        let binaries = binaries.map(|file| binary_beside(file));
-        let files = level.files.iter().cloned().chain(binaries);
+        let gltf = level.files.iter().filter(move |_| format == Format::Gltf);
+        let files = level.files.iter().cloned();
+        let files = files.chain(gltf.filter_map(|file| replaced_data(file)));
         files.chain(level.report.clone())
     })
+}
+
+/// Tells which names of parts are not in the file as they are in the source.
+fn tell_replaced_names(stage: &Stage, path: &Path, verbosity: Verbosity) {
+    let mut replaced = stage.replaced_names();
+    let Some((wanted, name)) = replaced.next() else {
+        return;
+    };
+    let others = match replaced.count() {
+        0 => String::new(),
+        others => format!(", and {} more", counted(others, "name")),
+    };
+    verbosity.note(format_args!(
+        "{}: some programs break white space, control characters and . : / [ ] in names, which become _: \"{}\" is \"{name}\"{others}",
+        path.display(),
+        shown_name(&wanted),
+    ));
+}
+
+/// As much of a name as tells which it is.
+fn shown_name(name: &str) -> String {
+    match name.char_indices().nth(60) {
+        Some((end, _)) => format!("{}...", &name[..end]),
+        None => name.to_owned(),
+    }
 }
 
 /// Writes a file of some steps, and does what is left to do when all of it is written and it is about to appear.
@@ -451,19 +487,11 @@ fn write_file(
             before_it_appears(work)
         })?,
         Format::Gltf => {
-            let binary = binary_beside(path);
-            let name = binary.file_name().and_then(OsStr::to_str);
-            let name = name.with_context(|| {
-                let path = path.display();
-                format!("{path}: a .gltf refers to its .bin by name, which has to be UTF-8")
+            let data = write_whole_gltf(path, |output| {
+                work.gltf(steps, output)?;
+                before_it_appears(work)
             })?;
-            // The data first: a .gltf never stands there without it.
-            write_whole(path, |json_writer| {
-                write_whole(&binary, |binary_writer| {
-                    work.gltf(steps, GltfOutput::gltf(name, json_writer, binary_writer))?;
-                    before_it_appears(work)
-                })
-            })?;
+            work.data_files.push(data);
         }
     }
     Ok(())
@@ -501,14 +529,10 @@ fn write_report(
     }
 }
 
-fn summary(files: &[PathBuf], format: Format, stage: &Stage, made: &Tally) -> String {
-    let mut bytes = 0;
-    for file in files {
-        bytes += fs::metadata(file).map_or(0, |data| data.len());
-        if format == Format::Gltf {
-            bytes += fs::metadata(binary_beside(file)).map_or(0, |data| data.len());
-        }
-    }
+fn summary(files: &[PathBuf], data_files: &[PathBuf], stage: &Stage, made: &Tally) -> String {
+    let sizes = files.iter().chain(data_files);
+    let sizes = sizes.map(|file| fs::metadata(file).map_or(0, |data| data.len()));
+    let bytes = sizes.sum();
     let place = from_first_to_last(files);
     let marker = if stage.marker().is_some() {
         " and the marker"
@@ -531,10 +555,6 @@ fn describe(facts: &Facts) -> String {
         facts.relative_gamma,
         counted(facts.triangles, "triangle")
     )
-}
-
-fn binary_beside(path: &Path) -> PathBuf {
-    path.with_extension("bin")
 }
 
 /// Wall-clock time of each stage, those of one name added up: what went on in the background meanwhile does not count.

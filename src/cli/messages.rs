@@ -1,9 +1,11 @@
 //! What the user is told, on stderr.
 
 use std::fmt::Display;
-use std::io::{Write, stderr, stdout};
+use std::fs;
+use std::io::{self, StdoutLock, Write, stderr, stdout};
+use std::path::Path;
 
-use anyhow::Context;
+use anyhow::{Context, ensure};
 
 /// How much the user wants to be told.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
@@ -57,18 +59,108 @@ pub(super) fn error(error: &anyhow::Error) {
 
 /// One line on stderr. Where nobody can be told (a full disk, a closed pipe) the work goes on, and the exit
 /// status still says how it ended.
+///
+/// It may have texts of files in it, which are shown and never obeyed.
 fn say(message: impl Display) {
-    let _ = writeln!(stderr().lock(), "{message}");
+    let _ = writeln!(stderr().lock(), "{}", shown(&message.to_string()));
+}
+
+/// Of a message, or a text in it, no more characters than so many are shown, of its beginning and of its end.
+const MOST_SHOWN: (usize, usize) = (1200, 600);
+
+/// A text in one line as a terminal may have it: what would move the cursor, colour what follows, begin a line of its own
+/// or turn the direction of writing is written out, and the middle of what is very long is left out.
+pub(super) fn shown(text: &str) -> String {
+    let acts = |c: char| {
+        c.is_control()
+            || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    let mut line = String::with_capacity(text.len().min(8000));
+    let mut add = |part: &str| {
+        for c in part.chars() {
+            match acts(c) {
+                true => line.extend(c.escape_default()),
+                false => line.push(c),
+            }
+        }
+    };
+    let (first, last) = MOST_SHOWN;
+    let mut starts = text.char_indices().map(|(start, _)| start);
+    match starts.nth(first + last) {
+        None => add(text),
+        Some(_) => {
+            let place = |count: usize| text.char_indices().nth(count).map(|(start, _)| start);
+            let end = text
+                .char_indices()
+                .rev()
+                .nth(last - 1)
+                .map(|(start, _)| start);
+            add(&text[..place(first).unwrap_or(text.len())]);
+            add(" ... ");
+            add(&text[end.unwrap_or(0)..]);
+        }
+    }
+    line
 }
 
 /// Writes a result to stdout and makes sure that all of it has gone out.
 pub(super) fn print(
     write: impl FnOnce(&mut dyn Write) -> anyhow::Result<()>,
 ) -> anyhow::Result<()> {
-    let mut out = stdout().lock();
-    write(&mut out)
-        .and_then(|()| Ok(out.flush()?))
-        .context("stdout")
+    ensure!(
+        !stdout_is_closed(),
+        "stdout: it is closed, expected a file or a pipe"
+    );
+    print_if_open(write)
+}
+
+/// The same for what a program may well want to throw away, and only know the exit status.
+pub(super) fn print_if_open(
+    write: impl FnOnce(&mut dyn Write) -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
+    let mut out = Watched {
+        out: stdout().lock(),
+        has_failed: false,
+    };
+    let written = write(&mut out).and_then(|()| Ok(out.flush()?));
+    // What else goes wrong names its own place.
+    match out.has_failed {
+        true => written.context("stdout"),
+        false => written,
+    }
+}
+
+/// Whether stdout was closed when the program began. The runtime opens `/dev/null` in its place, for reading and writing,
+/// so that all that is written would go well; a shell opens it for writing alone.
+pub(super) fn stdout_is_closed() -> bool {
+    let leads_nowhere =
+        fs::read_link("/proc/self/fd/1").is_ok_and(|place| place == Path::new("/dev/null"));
+    let about = fs::read_to_string("/proc/self/fdinfo/1").unwrap_or_default();
+    let flags = about.lines().find_map(|line| line.strip_prefix("flags:"));
+    let flags = flags.and_then(|flags| u32::from_str_radix(flags.trim(), 8).ok());
+    const READ_AND_WRITE: u32 = 2;
+    leads_nowhere && flags.is_some_and(|flags| flags & 3 == READ_AND_WRITE)
+}
+
+/// Stdout, and whether it has ever failed.
+struct Watched {
+    out: StdoutLock<'static>,
+    has_failed: bool,
+}
+
+impl Write for Watched {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.out.write(bytes);
+        let failed = |error: &io::Error| error.kind() != io::ErrorKind::Interrupted;
+        self.has_failed |= written.as_ref().is_err_and(failed);
+        written
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let flushed = self.out.flush();
+        self.has_failed |= flushed.is_err();
+        flushed
+    }
 }
 
 /// Such as "1 triangle", "1,200 triangles", "2 vertices".
@@ -125,6 +217,20 @@ mod tests {
         );
         assert_eq!(super::counted(1, "triangle"), "1 triangle");
         assert_eq!(super::counted(2000, "vertex"), "2,000 vertices");
+    }
+
+    #[test]
+    fn texts_are_shown_and_never_obeyed() {
+        assert_eq!(super::shown("立方体 \"é\" kept"), "立方体 \"é\" kept");
+        let forged = super::shown("a\u{1b}[31m\nnote: all is well\r\u{9b}2J\u{202e}z");
+        assert_eq!(
+            forged,
+            "a\\u{1b}[31m\\nnote: all is well\\r\\u{9b}2J\\u{202e}z"
+        );
+        let long = format!("begin{}end", "é".repeat(100_000));
+        let short = super::shown(&long);
+        assert!(short.chars().count() < 2000);
+        assert!(short.starts_with("begin") && short.ends_with("end"));
     }
 
     #[test]

@@ -11,5 +11,6 @@ pub use read::{
 };
 pub use write::{
     Export, Format, GltfFile, GltfOutput, Playback, Report, StageTime, Target, WriteError,
-    abandon_writes, destination, write_glb, write_gltf, write_ply, write_whole, write_whole_target,
+    abandon_writes, destination, replaced_data, write_glb, write_gltf, write_ply, write_whole,
+    write_whole_gltf, write_whole_target,
 };

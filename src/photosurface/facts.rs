@@ -12,7 +12,7 @@ use crate::tessellate::Certificate;
 /// What a photosurface is, in words and numbers: the same in files and in the report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Facts {
-    /// Names it in files: unique there, ASCII letters, digits, `_` and `-` only.
+    /// Names it in files: unique there, without characters that a reader breaks.
     pub name: String,
     /// The object in the scene.
     pub object: String,

@@ -7,34 +7,39 @@ pub fn step_label(step: usize) -> String {
     format!("step{step:03}")
 }
 
-/// Makes names that are unique and mean the same to every reader: ASCII letters, digits, `_` and `-`.
+/// A name as every reader keeps it: what one of them breaks is `_`.
+///
+/// Blender, trimesh, MeshLab and the validator keep letters of all scripts and whatever else there is. three.js makes
+/// `_` of white space and drops `[ ] . : /`, which its paths of properties are made of. What is no character to be shown
+/// is no name in any program.
+pub(super) fn plain(wanted: &str) -> String {
+    let is_broken =
+        |c: char| c.is_control() || c.is_whitespace() || c == '\u{feff}' || "[].:/".contains(c);
+    let kept = |c| if is_broken(c) { '_' } else { c };
+    wanted.chars().map(kept).collect()
+}
+
+/// Makes names that are unique and mean the same to every reader.
 #[derive(Default)]
 pub(super) struct UniqueNames {
     taken: HashSet<String>,
-    /// The number that was last tried behind a name: 20,000 parts may have one name.
-    tried: HashMap<String, usize>,
+    /// For each name that was wanted again, a number below which all are taken.
+    next: HashMap<String, usize>,
 }
 
 impl UniqueNames {
-    /// `wanted` with other characters replaced by `_`, and with a number behind it if it was taken.
+    /// `wanted` in [`plain`] characters, and with a number behind it if it was taken.
+    ///
+    /// However many want one name, each takes the same time.
     pub(super) fn unique(&mut self, wanted: &str) -> String {
-        let plain: String = wanted
-            .chars()
-            .map(|c| {
-                if c.is_ascii_alphanumeric() || c == '-' {
-                    c
-                } else {
-                    '_'
-                }
-            })
-            .collect();
+        let plain = plain(wanted);
         if self.taken.insert(plain.clone()) {
             return plain;
         }
-        let number = self.tried.entry(plain.clone()).or_insert(1);
+        let next = self.next.entry(plain.clone()).or_insert(2);
         loop {
-            *number += 1;
-            let name = format!("{plain}_{number}");
+            let name = format!("{plain}_{next}");
+            *next += 1;
             if self.taken.insert(name.clone()) {
                 return name;
             }
@@ -55,7 +60,19 @@ mod tests {
             .collect();
         assert_eq!(
             made,
-            ["a_b", "a_b_2", "a_b_2_2", "a_b_3", "Gro_es_Rad", "-"]
+            ["a_b", "a_b_2", "a_b_2_2", "a_b_3", "Großes_Rad", "-"]
+        );
+    }
+
+    #[test]
+    fn letters_of_every_script_stay_and_what_a_reader_breaks_does_not() {
+        for kept in ["立方体", "куб", "مكعب", "क्यूब", "cube(1)#\"é\"", "🎲"]
+        {
+            assert_eq!(plain(kept), kept);
+        }
+        assert_eq!(
+            plain("a[0].b:c/d\u{a0}e\u{1b}\n\u{85}\u{feff}"),
+            "a_0__b_c_d_e____"
         );
     }
 

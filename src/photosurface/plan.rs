@@ -110,7 +110,18 @@ pub(super) struct Surface<'a> {
     /// At rest; that of the stage where nothing was refined.
     pub(super) part: Cow<'a, Part>,
     pub(super) seen: Seen,
+    /// The box around all parts of the object that share an offset in a file with this one.
+    pub(super) around: (DVec3, DVec3),
     pub(super) certificate: Certificate,
+}
+
+/// A part of the object that is what it will be, and not yet proven.
+struct Unproven<'a> {
+    name: String,
+    part: Cow<'a, Part>,
+    seen: Seen,
+    gap: f64,
+    counts: Counts,
 }
 
 impl<'a> Plan<'a> {
@@ -137,7 +148,8 @@ impl<'a> Plan<'a> {
         };
         if let Some(shaped) = &placed.shaped {
             let mesh = placed.parts[0].1.mesh();
-            let rounding = plan.rounding(mesh, &plan.seen[0].extremes, 0.0);
+            let around = plan.around(&plan.seen);
+            let rounding = plan.rounding(mesh, &plan.seen[0].extremes, around, 0.0);
             let target = CURVATURE_SHARE * plan.deviation_allowed(rounding, mesh);
             let shape = match wanted.subdivide {
                 true => shaped.shape.within(target / shaped.largest_scale),
@@ -172,18 +184,24 @@ impl<'a> Plan<'a> {
             limits,
         } = self.draft();
         let refining = wanted.subdivide && self.view.relative_velocity().rapidity() > 0.0;
-        let surface = |((name, part), seen): ((String, Cow<'a, Part>), Seen)| {
+        let made = |((name, part), seen): ((String, Cow<'a, Part>), Seen)| {
+            let mesh = part.mesh();
+            let observer = self.view.observer_rest();
             if !refining {
-                let mesh = part.mesh();
-                return Surface {
-                    certificate: self.certificate_of_unrefined(&limits, mesh, &seen),
+                let found = survey(mesh, observer, f64::INFINITY, &limits.whole);
+                let counts = Counts {
+                    triangles_in: mesh.triangles().len(),
+                    triangles_out: mesh.triangles().len(),
+                    minimum_triangles: found.minimum_triangles,
+                };
+                return Unproven {
                     name,
                     part,
                     seen,
+                    gap: found.gap,
+                    counts,
                 };
             }
-            let mesh = part.mesh();
-            let observer = self.view.observer_rest();
             let refined = refine(mesh, observer, &limits.allowance, &limits.whole);
             let seen = if refined.mesh.positions().len() == mesh.positions().len() {
                 seen
@@ -195,11 +213,12 @@ impl<'a> Plan<'a> {
                 triangles_out: refined.mesh.triangles().len(),
                 minimum_triangles: refined.minimum_triangles,
             };
-            Surface {
+            Unproven {
                 name,
-                certificate: self.certificate(&limits, &refined.mesh, &seen, refined.gap, counts),
                 part: Cow::Owned(part.with_mesh(refined.mesh)),
                 seen,
+                gap: refined.gap,
+                counts,
             }
         };
         let parts: Vec<(String, Cow<'a, Part>)> = match parts {
@@ -214,11 +233,40 @@ impl<'a> Plan<'a> {
                 parts.map(|(name, part)| (name, Cow::Owned(part))).collect()
             }
         };
-        parts.into_par_iter().zip(seen).map(surface).collect()
+        let made: Vec<Unproven<'a>> = parts.into_par_iter().zip(seen).map(made).collect();
+        // Refinement reaches beyond the corners that there were.
+        let around = self.around(made.iter().map(|made| &made.seen));
+        let proven = |made: Unproven<'a>| Surface {
+            certificate: self.certificate(
+                &limits,
+                made.part.mesh(),
+                &made.seen,
+                around,
+                made.gap,
+                made.counts,
+            ),
+            name: made.name,
+            part: made.part,
+            seen: made.seen,
+            around: around.unwrap_or_default(),
+        };
+        made.into_par_iter().map(proven).collect()
+    }
+
+    /// The box whose middle is the offset of all these parts in a file: one for all, so that corners which parts share
+    /// are the same numbers in each.
+    fn around<'s>(&self, seen: impl IntoIterator<Item = &'s Seen>) -> Option<(DVec3, DVec3)> {
+        self.travel.or_else(|| bounds(seen))
     }
 
     /// The certificate of a mesh that stays what it is.
-    fn certificate_of_unrefined(&self, limits: &Limits, mesh: &Mesh, seen: &Seen) -> Certificate {
+    fn certificate_of_unrefined(
+        &self,
+        limits: &Limits,
+        mesh: &Mesh,
+        seen: &Seen,
+        around: Option<(DVec3, DVec3)>,
+    ) -> Certificate {
         let observer = self.view.observer_rest();
         let found = survey(mesh, observer, f64::INFINITY, &limits.whole);
         let counts = Counts {
@@ -226,7 +274,7 @@ impl<'a> Plan<'a> {
             triangles_out: mesh.triangles().len(),
             minimum_triangles: found.minimum_triangles,
         };
-        self.certificate(limits, mesh, seen, found.gap, counts)
+        self.certificate(limits, mesh, seen, around, found.gap, counts)
     }
 
     /// The certificate of a mesh, refined or not, with the largest gap `e`.
@@ -235,6 +283,7 @@ impl<'a> Plan<'a> {
         limits: &Limits,
         mesh: &Mesh,
         seen: &Seen,
+        around: Option<(DVec3, DVec3)>,
         gap: f64,
         counts: Counts,
     ) -> Certificate {
@@ -242,7 +291,7 @@ impl<'a> Plan<'a> {
             gap: self.view.relative_velocity().gamma_beta() * gap * (1.0 + 4.0 * f64::EPSILON),
             deviation: self.deviation,
             curvature: limits.curvature,
-            rounding: self.rounding(mesh, &seen.extremes, 0.0),
+            rounding: self.rounding(mesh, &seen.extremes, around, 0.0),
         };
         match self.tolerance {
             Tolerance::Angle(degrees) => {
@@ -287,16 +336,19 @@ impl<'a> Plan<'a> {
             });
             curvature = self.deviation * stretches.reduce(|| 0.0, f64::max);
         }
+        let around = self.around(seen);
         let rounding = |bulging: bool| {
-            let of_each = seen.iter().zip(parts).map(|(seen, (_, part))| {
-                let bulge = match bulging {
-                    true => {
-                        self.view.relative_velocity().gamma_beta() * self.largest_gap(part.mesh())
-                    }
-                    false => 0.0,
-                };
-                self.rounding(part.mesh(), &seen.extremes, bulge)
-            });
+            let bulge = match bulging {
+                true => {
+                    let gaps = parts.iter().map(|(_, part)| self.largest_gap(part.mesh()));
+                    self.view.relative_velocity().gamma_beta() * gaps.fold(0.0, f64::max)
+                }
+                false => 0.0,
+            };
+            let of_each = seen
+                .iter()
+                .zip(parts)
+                .map(|(seen, (_, part))| self.rounding(part.mesh(), &seen.extremes, around, bulge));
             of_each.fold(0.0, f64::max)
         };
         let of_corners = rounding(false);
@@ -315,11 +367,17 @@ impl<'a> Plan<'a> {
     }
 
     /// What rounding moves vertices by, also those that refinement will add where the photosurface is beyond the flat
-    /// triangles between the vertices that there are, by at most `bulge`.
-    fn rounding(&self, mesh: &Mesh, seen: &Extremes, bulge: f64) -> f64 {
+    /// triangles between the vertices that there are, by at most `bulge`. `around` is the box around all parts.
+    fn rounding(
+        &self,
+        mesh: &Mesh,
+        seen: &Extremes,
+        around: Option<(DVec3, DVec3)>,
+        bulge: f64,
+    ) -> f64 {
         let (center, radius) = ball(mesh);
         let stretch = self.view.stretch_bound(center, radius);
-        let in_file = match (self.precision, self.travel.or(seen.bounds())) {
+        let in_file = match (self.precision, around) {
             (Precision::Single, Some((low, high))) => Some(Singles {
                 extent: high - low + bulge,
                 roundings: if self.travel.is_some() { 3.0 } else { 1.0 },

@@ -188,18 +188,66 @@ impl Certificate {
     fn new(unit: &'static str, tolerance: f64, bounds: [f64; 4], counts: Counts) -> Self {
         let [gap, curvature, rounding, total] = bounds;
         let total = total * UP;
+        // Some triangle there has to be, whatever overflowed on the way to their number.
+        let minimum_triangles = match counts.minimum_triangles.is_nan() {
+            true => 1.0,
+            false => finite(counts.minimum_triangles),
+        };
         Self {
             unit,
-            tolerance,
-            gap,
-            curvature,
-            rounding,
-            total,
-            complete: total <= tolerance,
+            tolerance: finite(tolerance),
+            gap: finite(gap),
+            curvature: finite(curvature),
+            rounding: finite(rounding),
+            total: finite(total),
+            complete: total <= tolerance && total.is_finite(),
             triangles_in: counts.triangles_in,
             triangles_out: counts.triangles_out,
-            minimum_triangles: counts.minimum_triangles,
-            ratio: counts.triangles_out as f64 / counts.minimum_triangles,
+            minimum_triangles,
+            ratio: finite(counts.triangles_out as f64 / minimum_triangles),
+        }
+    }
+}
+
+/// A number that a file can say: JSON has no infinity, and instead of one `null` would be read. What is beyond `f64`, or
+/// unknown, is the largest there is; a certificate with such a bound is not complete.
+fn finite(number: f64) -> f64 {
+    if number.is_nan() {
+        return f64::MAX;
+    }
+    number.clamp(-f64::MAX, f64::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_number_of_a_certificate_is_null() {
+        let hard = [0.0, 1.0, 1e308, f64::MAX, f64::INFINITY, f64::NAN];
+        for gap in hard {
+            for minimum_triangles in hard {
+                let bounds = Bounds {
+                    gap,
+                    deviation: 0.0,
+                    curvature: 1.0,
+                    rounding: 1e308,
+                };
+                let counts = Counts {
+                    triangles_in: 1,
+                    triangles_out: 1,
+                    minimum_triangles,
+                };
+                let certificate = Certificate::of_lengths(f64::MAX, bounds, counts);
+                let text = serde_json::to_string(&certificate).unwrap();
+                assert!(!text.contains("null"), "{text}");
+                let sum = gap + 1.0 + 1e308;
+                assert_eq!(
+                    certificate.complete,
+                    sum.is_finite() && sum * UP <= f64::MAX
+                );
+                assert!(certificate.gap >= gap || gap.is_nan() || gap.is_infinite());
+            }
         }
     }
 }

@@ -36,7 +36,8 @@ def test_the_structure_is_plain(scene, export):
     names = [node["name"] for node in json["nodes"]]
     assert len(set(names)) == len(names)
     for node in json["nodes"]:
-        assert node["name"].isascii()
+        # three.js drops or replaces these.
+        assert not set(node["name"]) & set("[].:/") and not any(c.isspace() for c in node["name"])
         assert node["name"] == json["meshes"][node["mesh"]]["name"]
         assert node.keys() <= {"name", "mesh", "translation", "extras"}
     for mesh in json["meshes"]:

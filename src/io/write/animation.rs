@@ -89,8 +89,11 @@ impl GltfFile<'_> {
         if let Some(source) = &first.facts.source {
             extras["source"] = Value::clone(source);
         }
-        let material = Layer::from(first).material;
-        let node = self.add_node(name, &meshes, material, &[], Some(extras))?;
+        let layer = Layer {
+            name,
+            ..Layer::from(first)
+        };
+        let node = self.add_node(&layer, &meshes, &[], Some(extras))?;
         let Some(playback) = self.playback() else {
             return Ok(());
         };

@@ -87,6 +87,9 @@ pub enum WriteError {
     /// More vertices in one file than a `u32` index can tell apart.
     #[error("the file would have {0} vertices, expected at most {max}; write the steps to files of their own, as --split does", max = u32::MAX)]
     TooManyVertices(usize),
+    /// A `.gltf` whose name its data cannot be named after.
+    #[error("{}: a .gltf refers to its .bin by name, which has to be UTF-8", .0.display())]
+    NotText(PathBuf),
     /// The operating system says no.
     #[error("cannot write {}", path.display())]
     Io {

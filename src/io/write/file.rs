@@ -1,7 +1,7 @@
 //! Files that appear whole or not at all: written beside their place, then renamed.
 
 use std::collections::BTreeSet;
-use std::fs::{self, File};
+use std::fs::{self, File, Metadata};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -93,7 +93,7 @@ pub fn write_whole_target(
     }
 }
 
-enum Destination {
+pub(super) enum Destination {
     /// A file that is there or can be made, links followed.
     Regular(PathBuf),
     /// Something else that can be written to.
@@ -101,7 +101,7 @@ enum Destination {
 }
 
 impl Destination {
-    fn of(path: &Path) -> Result<Self, WriteError> {
+    pub(super) fn of(path: &Path) -> Result<Self, WriteError> {
         match fs::canonicalize(path) {
             Ok(place) => {
                 let data = fs::metadata(&place).map_err(|source| io_error(path, source))?;
@@ -149,7 +149,7 @@ fn new_file(path: &Path) -> std::io::Result<PathBuf> {
     ))
 }
 
-fn directory_of(path: &Path) -> &Path {
+pub(super) fn directory_of(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
@@ -177,35 +177,84 @@ pub fn abandon_writes() {
 }
 
 /// A temporary file that [`abandon_writes`] knows of.
-struct Unfinished {
+pub(super) struct Unfinished {
     file: Option<NamedTempFile>,
     path: PathBuf,
+    /// Of the file that it will replace.
+    replaced: Option<Metadata>,
 }
 
 impl Unfinished {
-    fn begin(make: impl FnOnce() -> std::io::Result<NamedTempFile>) -> std::io::Result<Self> {
+    fn begin(
+        make: impl FnOnce() -> std::io::Result<NamedTempFile>,
+        replaced: Option<Metadata>,
+    ) -> std::io::Result<Self> {
         let mut unfinished = unfinished();
         let file = make()?;
         // Absolute or not: the program never changes its directory.
         let path = file.path().to_owned();
         unfinished.insert(path.clone());
         let file = Some(file);
-        Ok(Self { file, path })
+        Ok(Self {
+            file,
+            path,
+            replaced,
+        })
     }
 
-    fn file(&mut self) -> &mut File {
+    pub(super) fn file(&mut self) -> &mut File {
         let file = self.file.as_mut();
         file.expect("there until it is persisted").as_file_mut()
     }
 
+    /// Gives the file to whoever has the one that it replaces, with the same permissions, and takes it out.
+    fn finished(&mut self) -> std::io::Result<NamedTempFile> {
+        if let Some(replaced) = self.replaced.take() {
+            let file = self.file();
+            #[cfg(unix)]
+            {
+                use std::os::unix::fs::{MetadataExt, fchown};
+                let own = file.metadata()?;
+                let (owner, group) = (replaced.uid(), replaced.gid());
+                if (own.uid(), own.gid()) != (owner, group) {
+                    // Only some may give files away; the others own what they write.
+                    let _ = fchown(&*file, Some(owner), Some(group));
+                }
+            }
+            file.set_permissions(replaced.permissions())?;
+        }
+        Ok(self.file.take().expect("only this takes it, and only once"))
+    }
+
     fn persist(mut self, place: &Path) -> std::io::Result<()> {
-        let file = self.file.take().expect("only this takes it, and only once");
+        let file = self.finished()?;
         // Held while the file gets its name: it is either unfinished or finished.
         let unfinished = unfinished();
         let persisted = file.persist(place);
         drop(unfinished);
         persisted.map(drop).map_err(|error| error.error)
     }
+}
+
+/// Gives two files their names, `first` first; a signal finds both with their names or neither, and where the second
+/// cannot have its own, the first is gone too, unless it replaced another.
+pub(super) fn persist_both(
+    (mut first, first_place): (Unfinished, &Path),
+    (mut second, second_place): (Unfinished, &Path),
+) -> std::io::Result<()> {
+    let (first_file, second_file) = (first.finished()?, second.finished()?);
+    let unfinished = unfinished();
+    let is_new = !first_place.exists();
+    let persisted = first_file.persist(first_place).and_then(|_| {
+        second_file.persist(second_place).inspect_err(|_| {
+            if is_new {
+                // There is nothing else to be done about it.
+                let _ = fs::remove_file(first_place);
+            }
+        })
+    });
+    drop(unfinished);
+    persisted.map(drop).map_err(|error| error.error)
 }
 
 impl Drop for Unfinished {
@@ -217,18 +266,27 @@ impl Drop for Unfinished {
 }
 
 fn temporary_beside(place: &Path) -> std::io::Result<Unfinished> {
+    temporary_in(directory_of(place), fs::metadata(place).ok())
+}
+
+/// A temporary file that may be read by those who may read what it will replace.
+pub(super) fn temporary_in(
+    directory: &Path,
+    replaced: Option<Metadata>,
+) -> std::io::Result<Unfinished> {
     let mut builder = Builder::new();
     builder.prefix(".photosurface-");
     #[cfg(unix)]
     {
-        // The permissions of any new file; tempfile's own are for the owner alone.
+        // The permissions of any new file; while it is not known that others may read what it replaces, they may not.
         use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
+        let mode = if replaced.is_some() { 0o600 } else { 0o666 };
+        builder.permissions(fs::Permissions::from_mode(mode));
     }
-    Unfinished::begin(|| builder.tempfile_in(directory_of(place)))
+    Unfinished::begin(|| builder.tempfile_in(directory), replaced)
 }
 
-fn io_error(path: &Path, source: std::io::Error) -> WriteError {
+pub(super) fn io_error(path: &Path, source: std::io::Error) -> WriteError {
     // tempfile names its file behind what the system says; nobody else knows that file.
     let text = source.to_string();
     let source = match text.split_once(" at path ") {

@@ -5,7 +5,6 @@
 //! colours, materials, images) is written once.
 
 use std::io::Write;
-use std::sync::Arc;
 
 use glam::{DVec3, DVec4, Vec2};
 use gltf::json::validation::Checked;
@@ -13,11 +12,11 @@ use gltf::json::{self, Index, mesh::Semantic};
 use serde_json::{Value, json};
 
 use super::document::{Document, Use};
-use super::layer::{Layer, Scalar};
+use super::layer::{Layer, Numbers, Scalar};
 use super::materials::Materials;
 use super::pack::{Bounds, Packing};
 use super::{Export, GltfOutput, Playback, WriteError};
-use crate::mesh::{Material, Mesh, Part};
+use crate::mesh::{Mesh, Part};
 use crate::photosurface::{Photosurface, SceneFacts, step_label};
 use crate::scene::Attributes;
 
@@ -126,26 +125,26 @@ impl<'a> GltfFile<'a> {
     }
 
     fn add_layer(&mut self, layer: &Layer<'_>) -> Result<Index<json::Node>, WriteError> {
-        let scalars = layer.scalars(self.attributes)?;
+        let scalars = layer.scalars(self.attributes, Numbers::Single)?;
         let extras = layer.facts.map(|facts| json!(facts));
-        self.add_node(layer.name, &[layer.mesh], layer.material, &scalars, extras)
+        self.add_node(layer, &[layer.mesh], &scalars, extras)
     }
 
     /// A node with a mesh; `steps` are its geometry at the first step and at those that morph targets are for.
     pub(super) fn add_node(
         &mut self,
-        name: &str,
+        layer: &Layer<'_>,
         steps: &[&Mesh],
-        material: Option<&Arc<Material>>,
         scalars: &[Scalar<'_>],
         extras: Option<Value>,
     ) -> Result<Index<json::Node>, WriteError> {
+        let name = layer.name;
         let mesh = steps[0];
         if mesh.triangles().is_empty() {
             return Err(WriteError::Empty(name.to_owned()));
         }
         let positions: Vec<_> = steps.iter().map(|mesh| mesh.positions()).collect();
-        let packing = Packing::new(name, &positions)?;
+        let packing = Packing::new(name, &positions, layer.around)?;
         let document = &mut self.document;
         let local = |_: usize, place: &DVec3| packing.local(*place);
         let bounds = Some(packing.local_bounds());
@@ -196,7 +195,7 @@ impl<'a> GltfFile<'a> {
             extensions: None,
             extras: None,
             indices: Some(indices),
-            material: Some(Index::new(self.materials.add(material) as u32)),
+            material: Some(Index::new(self.materials.add(layer.material) as u32)),
             mode: Checked::Valid(json::mesh::Mode::Triangles),
             targets: Some(targets).filter(|targets| !targets.is_empty()),
         };

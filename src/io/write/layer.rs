@@ -16,9 +16,11 @@ pub(super) struct Layer<'a> {
     pub(super) name: &'a str,
     pub(super) mesh: &'a Mesh,
     pub(super) material: Option<&'a Arc<Material>>,
+    /// The box around all that shares corners with it, if that is more.
+    pub(super) around: Option<(DVec3, DVec3)>,
     /// `None` for the observer's own marker: nothing moves.
     pub(super) facts: Option<&'a Facts>,
-    vertex_data: Option<&'a VertexData>,
+    pub(super) vertex_data: Option<&'a VertexData>,
 }
 
 /// A number at every vertex.
@@ -41,7 +43,25 @@ enum Values<'a> {
     Axis(&'a [DVec3], usize),
 }
 
+/// What numbers of a file may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Numbers {
+    /// `f32` only.
+    Single,
+    /// `f64` where `f32` is not enough.
+    Any,
+}
+
 impl Scalar<'_> {
+    /// Whether `f32` holds all of them, none too large and none too small, as those of so many vertices.
+    pub(super) fn is_single(&self, vertices: usize) -> bool {
+        let holds = |value: f64| {
+            let size = value.abs();
+            size == 0.0 || (f64::from(f32::MIN_POSITIVE)..=f64::from(f32::MAX)).contains(&size)
+        };
+        (0..vertices).all(|vertex| holds(self.at(vertex)))
+    }
+
     /// The number at a vertex.
     pub(super) fn at(&self, vertex: usize) -> f64 {
         match self.values {
@@ -67,6 +87,7 @@ impl<'a> From<&'a Part> for Layer<'a> {
             name: &marker.name,
             mesh: marker.mesh(),
             material: marker.material.as_ref(),
+            around: None,
             facts: None,
             vertex_data: None,
         }
@@ -79,6 +100,7 @@ impl<'a> From<&'a Photosurface> for Layer<'a> {
             name: &photosurface.facts.name,
             mesh: &photosurface.mesh,
             material: photosurface.material.as_ref(),
+            around: Some(photosurface.around),
             facts: Some(&photosurface.facts),
             vertex_data: Some(&photosurface.vertex_data),
         }
@@ -91,13 +113,30 @@ impl<'a> Layer<'a> {
     ///
     /// # Errors
     ///
-    /// A number that `f32` cannot hold.
-    pub(super) fn scalars(&self, asked_for: Attributes) -> Result<Vec<Scalar<'a>>, WriteError> {
+    /// A number that the file cannot hold.
+    pub(super) fn scalars(
+        &self,
+        asked_for: Attributes,
+        numbers: Numbers,
+    ) -> Result<Vec<Scalar<'a>>, WriteError> {
         let positions = self.mesh.positions();
         let mut scalars = vec![];
         let mut add = |name, words, values| {
             let scalar = Scalar { name, values };
             match first_beyond_f32(positions.len(), |vertex| scalar.at(vertex)) {
+                Some(vertex) if numbers == Numbers::Any => {
+                    let is_none = |vertex: &usize| !scalar.at(*vertex).is_finite();
+                    match (vertex..positions.len()).find(is_none) {
+                        Some(vertex) => Err(WriteError::Overflow {
+                            name: self.name.to_owned(),
+                            vertex,
+                        }),
+                        None => {
+                            scalars.push(scalar);
+                            Ok(())
+                        }
+                    }
+                }
                 Some(vertex) => Err(WriteError::Range {
                     name: self.name.to_owned(),
                     quantity: words,

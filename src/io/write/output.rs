@@ -1,13 +1,14 @@
 //! Where a glTF file goes: its data as it comes, and its JSON, which is known last.
 
 use std::env::temp_dir;
-use std::io::{self, Seek, Write};
+use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use tempfile::SpooledTempFile;
 
 use super::glb::{InPlace, Json, check_size, least_room, padding, write_front};
+use super::text::of_temporary_file;
 use super::{Target, WriteError};
 
 /// What may not stand in a relative reference as it is.
@@ -38,7 +39,7 @@ enum Form<'a> {
         json: &'a mut dyn Write,
         data: &'a mut dyn Write,
         /// Of the file of the data.
-        name: String,
+        name: BinaryName<'a>,
     },
     /// A GLB whose data waits until the JSON has gone out.
     Stream {
@@ -47,6 +48,30 @@ enum Form<'a> {
     },
     /// A GLB whose data is where it belongs.
     InPlace(InPlace<'a>),
+}
+
+/// How the file of the data is called.
+enum BinaryName<'a> {
+    /// As whoever writes it says.
+    Given(&'a str),
+    /// By what is in it: `out-1a2b3c4d.bin`.
+    OfContent {
+        stem: &'a str,
+        digest: crc32fast::Hasher,
+        /// To be told when it is known.
+        told: &'a mut String,
+    },
+}
+
+impl BinaryName<'_> {
+    fn name(&self) -> String {
+        match self {
+            Self::Given(name) => (*name).to_owned(),
+            Self::OfContent { stem, digest, .. } => {
+                format!("{stem}-{:08x}.bin", digest.clone().finalize())
+            }
+        }
+    }
 }
 
 impl<'a> GltfOutput<'a> {
@@ -79,7 +104,7 @@ impl<'a> GltfOutput<'a> {
 
     /// JSON with its data in a file beside it, called `binary_name`.
     pub fn gltf(
-        binary_name: &str,
+        binary_name: &'a str,
         json_writer: &'a mut dyn Write,
         binary_writer: &'a mut dyn Write,
     ) -> Self {
@@ -87,9 +112,32 @@ impl<'a> GltfOutput<'a> {
             form: Form::Parts {
                 json: json_writer,
                 data: binary_writer,
-                name: utf8_percent_encode(binary_name, IN_REFERENCE).to_string(),
+                name: BinaryName::Given(binary_name),
             },
             directory: temp_dir(),
+        }
+    }
+
+    /// JSON with its data in a file beside it, whose name is made of `stem` and of what is in it; `told` what it is when
+    /// all is written. What has to wait may do so in `directory`.
+    pub(super) fn named_by_content(
+        stem: &'a str,
+        directory: &Path,
+        json_writer: &'a mut dyn Write,
+        binary_writer: &'a mut dyn Write,
+        told: &'a mut String,
+    ) -> Self {
+        Self {
+            form: Form::Parts {
+                json: json_writer,
+                data: binary_writer,
+                name: BinaryName::OfContent {
+                    stem,
+                    digest: crc32fast::Hasher::new(),
+                    told,
+                },
+            },
+            directory: directory.to_owned(),
         }
     }
 
@@ -97,10 +145,12 @@ impl<'a> GltfOutput<'a> {
         &self.directory
     }
 
-    /// What the JSON calls the file of the data, where that is one of its own.
+    /// What the JSON calls the file of the data, where that is one of its own; to be asked when all data is written.
     pub(super) fn binary_name(&self) -> Option<String> {
         match &self.form {
-            Form::Parts { name, .. } => Some(name.clone()),
+            Form::Parts { name, .. } => {
+                Some(utf8_percent_encode(&name.name(), IN_REFERENCE).to_string())
+            }
             _ => None,
         }
     }
@@ -132,8 +182,14 @@ impl<'a> GltfOutput<'a> {
     pub(super) fn finish(self, json: Json, bytes: u64) -> Result<(), WriteError> {
         match self.form {
             Form::Parts {
-                json: out, data, ..
+                json: out,
+                data,
+                name,
             } => {
+                let called = name.name();
+                if let BinaryName::OfContent { told, .. } = name {
+                    *told = called;
+                }
                 data.flush()?;
                 json.write_to(out)?;
                 out.write_all(b"\n")?;
@@ -142,8 +198,7 @@ impl<'a> GltfOutput<'a> {
             Form::Stream { out, mut data } => {
                 let room = least_room(&json);
                 write_front(out, json, room, bytes)?;
-                data.rewind()?;
-                io::copy(&mut data, out)?;
+                copy(&mut data, out, &self.directory)?;
                 out.write_all(padding(bytes))?;
                 Ok(out.flush()?)
             }
@@ -152,12 +207,36 @@ impl<'a> GltfOutput<'a> {
     }
 }
 
+/// Copies what waited.
+fn copy(from: &mut SpooledTempFile, to: &mut dyn Write, directory: &Path) -> io::Result<()> {
+    let waiting = |source| of_temporary_file(directory, source);
+    from.rewind().map_err(waiting)?;
+    let mut piece = vec![0; 1 << 18];
+    loop {
+        match from.read(&mut piece) {
+            Ok(0) => return Ok(()),
+            Ok(length) => to.write_all(&piece[..length])?,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(waiting(error)),
+        }
+    }
+}
+
 /// The data.
 impl Write for GltfOutput<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.form {
-            Form::Parts { data, .. } => data.write(bytes),
-            Form::Stream { data, .. } => data.write(bytes),
+            Form::Parts { data, name, .. } => {
+                let written = data.write(bytes)?;
+                if let BinaryName::OfContent { digest, .. } = name {
+                    digest.update(&bytes[..written]);
+                }
+                Ok(written)
+            }
+            Form::Stream { data, .. } => {
+                let written = data.write(bytes);
+                written.map_err(|source| of_temporary_file(&self.directory, source))
+            }
             Form::InPlace(file) => file.write(bytes),
         }
     }

@@ -20,11 +20,12 @@ pub(super) struct Packing {
 
 impl Packing {
     /// Splits positions into an offset and what is left, so that the numbers left are as small as they can be; `steps`
-    /// are the same vertices at several steps, at least one.
+    /// are the same vertices at several steps, at least one. `around` is the box around all that shares corners with
+    /// them, and has to share the offset: equal positions are then equal numbers, whoever adds them up and however.
     ///
     /// # Accuracy
     ///
-    /// The offset is the middle of the bounds, rounded to a multiple of a sixteenth of the extent at most:
+    /// The offset is the middle of that box, rounded to a multiple of a sixteenth of its extent at most:
     /// programs that read it as `f32` still read it exactly while it is within a million extents. Each
     /// coordinate is then rounded once, to `f32`: by at most 2^-24 of half the extent and an eighth of that. Those of
     /// later steps are sums of two, of which the difference, at most twice as large, is rounded, and the sum by whoever
@@ -33,13 +34,18 @@ impl Packing {
     /// # Errors
     ///
     /// No positions, or a number that `f32` cannot hold: too large, or an extent so small that it vanishes.
-    pub(super) fn new(name: &str, steps: &[&[DVec3]]) -> Result<Self, WriteError> {
+    pub(super) fn new(
+        name: &str,
+        steps: &[&[DVec3]],
+        around: Option<(DVec3, DVec3)>,
+    ) -> Result<Self, WriteError> {
         let bounds = steps.iter().map(|step| checked_bounds(name, step));
         let bounds: Vec<_> = bounds.collect::<Result<_, _>>()?;
         let first = *bounds
             .first()
             .ok_or_else(|| WriteError::Empty(name.to_owned()))?;
-        let (low, high) = bounds.into_iter().fold(first, joined);
+        let own = bounds.into_iter().fold(first, joined);
+        let (low, high) = around.unwrap_or(own);
         let half_extent = (0.5 * high - 0.5 * low).max_element();
         if half_extent > 0.0 && half_extent < f64::from(f32::MIN_POSITIVE) {
             return Err(WriteError::TooSmall {
@@ -201,7 +207,7 @@ mod tests {
             corner + DVec3::new(1e-3, 2e-3, 0.0),
             corner + DVec3::new(0.0, 0.0, 3e-3),
         ];
-        let packing = Packing::new("far", &[&positions]).unwrap();
+        let packing = Packing::new("far", &[&positions], None).unwrap();
         for position in &positions {
             let local = packing.local(*position);
             let back = packing.offset + DVec3::from(local.map(f64::from));
@@ -215,7 +221,7 @@ mod tests {
     fn the_offset_is_exact_in_f32_within_a_million_extents() {
         for distance in [0.0, 1.0, 123.456, 5e5] {
             let middle = DVec3::new(distance, -distance / 3.0, 0.1);
-            let packing = Packing::new("near", &[&[middle - 0.7, middle + 0.7]]).unwrap();
+            let packing = Packing::new("near", &[&[middle - 0.7, middle + 0.7]], None).unwrap();
             let offset = packing.offset;
             assert_eq!(offset.as_vec3().as_dvec3(), offset, "{distance}");
             let max = packing.local_bounds().max.map(f64::from);
@@ -234,7 +240,7 @@ mod tests {
             })
             .collect();
         let slices: Vec<&[DVec3]> = steps.iter().map(Vec::as_slice).collect();
-        let packing = Packing::new("moving", &slices).unwrap();
+        let packing = Packing::new("moving", &slices, None).unwrap();
         // Half of what it moves and is wide, and an eighth of that.
         let reach = 0.5 * 1.125 * 4e3 + 1.0;
         for positions in &steps[1..] {
@@ -256,7 +262,7 @@ mod tests {
                 DVec3::new(turn.sin(), 1e-3 * turn.cos(), -0.0) + DVec3::new(1e5, 7.0, 0.0)
             };
             let positions: Vec<DVec3> = (0..count).map(place).collect();
-            let packing = Packing::new("a", &[&positions]).unwrap();
+            let packing = Packing::new("a", &[&positions], None).unwrap();
             let locals: Vec<[f32; 3]> = positions.iter().map(|&p| packing.local(p)).collect();
             let bounds = packing.local_bounds();
             let all = Bounds::of_all(count, |index| locals[index]);
@@ -275,7 +281,8 @@ mod tests {
 
     #[test]
     fn what_f32_cannot_hold_is_refused() {
-        let huge = Packing::new("a", &[&[DVec3::ZERO, DVec3::new(0.0, 1e39, 0.0)]]).unwrap_err();
+        let huge =
+            Packing::new("a", &[&[DVec3::ZERO, DVec3::new(0.0, 1e39, 0.0)]], None).unwrap_err();
         assert!(
             huge.to_string()
                 .contains("vertex 1 of the photosurface \"a\" is 1e39"),
@@ -284,13 +291,13 @@ mod tests {
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
             // One coordinate that is no number, the others 0.
             let place = DVec3::select(axis.cmpgt(DVec3::ZERO), DVec3::NAN, DVec3::ZERO);
-            let message = Packing::new("a", &[&[DVec3::ZERO, place]]).unwrap_err();
+            let message = Packing::new("a", &[&[DVec3::ZERO, place]], None).unwrap_err();
             assert!(message.to_string().contains("vertex 1"), "{message}");
         }
-        assert!(Packing::new("a", &[&[DVec3::ZERO, DVec3::splat(1e-40)]]).is_err());
-        assert!(Packing::new("a", &[&[]]).is_err());
+        assert!(Packing::new("a", &[&[DVec3::ZERO, DVec3::splat(1e-40)]], None).is_err());
+        assert!(Packing::new("a", &[&[]], None).is_err());
         let place = DVec3::splat(3.3);
-        let point = Packing::new("a", &[&[place]]).unwrap();
+        let point = Packing::new("a", &[&[place]], None).unwrap();
         assert_eq!((point.offset, point.local(place)), (place, [0.0; 3]));
     }
 }

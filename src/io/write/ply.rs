@@ -1,7 +1,8 @@
 //! Binary PLY with positions in double precision: for MeshLab, and where `f32` is not enough.
 //!
 //! The format has one list of vertices: all photosurfaces of a file become one mesh. `quality`, the one
-//! scalar that MeshLab reads, is the Doppler factor; what else is known of vertices has properties of its own.
+//! scalar that MeshLab reads, is the Doppler factor; what else is known of vertices has properties of its own. They are
+//! `float`, and `double` where some number of theirs is beyond that.
 //! Materials and texture coordinates stay behind.
 //!
 //! Source: G. Turk, *The PLY Polygon File Format* (1994).
@@ -10,7 +11,7 @@ use std::io::Write;
 
 use glam::{DVec3, Vec4};
 
-use super::layer::{Layer, Scalar, layers};
+use super::layer::{Layer, Numbers, Scalar, layers};
 use super::{Export, WriteError};
 use crate::mesh::Mesh;
 use crate::photosurface::Photosurface;
@@ -19,8 +20,7 @@ use crate::photosurface::Photosurface;
 ///
 /// # Errors
 ///
-/// A mesh without triangles, a number at a vertex that `f32` cannot hold, more than 2^32 - 1 vertices, or the
-/// writer fails.
+/// A mesh without triangles, a number at a vertex that is none, more than 2^32 - 1 vertices, or the writer fails.
 pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), WriteError> {
     let layers: Vec<Layer<'_>> = layers(export).collect();
     let vertices: usize = layers
@@ -39,8 +39,14 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
     let mut scalars = vec![];
     for layer in &layers {
         check_positions(layer.name, layer.mesh)?;
-        scalars.push(layer.scalars(asked_for)?);
+        scalars.push(layer.scalars(asked_for, Numbers::Any)?);
     }
+    let columns = scalars.first().map_or(0, Vec::len);
+    let is_double = |column: usize| {
+        let mut all = layers.iter().zip(&scalars);
+        !all.all(|(layer, scalars)| scalars[column].is_single(layer.mesh.positions().len()))
+    };
+    let doubles: Vec<bool> = (0..columns).map(is_double).collect();
     let with_colors = layers.iter().any(|layer| layer.mesh.colors().is_some());
 
     write!(
@@ -57,8 +63,9 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
          property double x\nproperty double y\nproperty double z\n\
          property float nx\nproperty float ny\nproperty float nz\n",
     )?;
-    for scalar in scalars.first().into_iter().flatten() {
-        writeln!(writer, "property float {}", property(scalar))?;
+    for (scalar, is_double) in scalars.first().into_iter().flatten().zip(&doubles) {
+        let kind = if *is_double { "double" } else { "float" };
+        writeln!(writer, "property {kind} {}", property(scalar))?;
     }
     if with_colors {
         writer.write_all(
@@ -71,7 +78,7 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
     )?;
 
     for (layer, scalars) in layers.iter().zip(&scalars) {
-        write_vertices(&mut writer, layer, scalars, with_colors)?;
+        write_vertices(&mut writer, layer, scalars, &doubles, with_colors)?;
     }
     let mut first = 0u32;
     for layer in &layers {
@@ -126,6 +133,7 @@ fn write_vertices(
     writer: &mut impl Write,
     layer: &Layer<'_>,
     scalars: &[Scalar<'_>],
+    doubles: &[bool],
     with_colors: bool,
 ) -> Result<(), WriteError> {
     let mesh = layer.mesh;
@@ -139,8 +147,13 @@ fn write_vertices(
         for value in normal.to_array() {
             writer.write_all(&(value as f32).to_le_bytes())?;
         }
-        for scalar in scalars {
-            writer.write_all(&(scalar.at(vertex) as f32).to_le_bytes())?;
+        for (scalar, is_double) in scalars.iter().zip(doubles) {
+            let value = scalar.at(vertex);
+            if *is_double {
+                writer.write_all(&value.to_le_bytes())?;
+            } else {
+                writer.write_all(&(value as f32).to_le_bytes())?;
+            }
         }
         if with_colors {
             let color = mesh.colors().map_or(Vec4::ONE, |colors| colors[vertex]);

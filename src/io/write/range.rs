@@ -1,6 +1,6 @@
 //! Whether the numbers of a file can hold what is seen, before any of the work.
 
-use super::layer::Layer;
+use super::layer::{Layer, Numbers};
 use super::pack::{Packing, bounds};
 use super::ply::check_positions;
 use super::{Format, WriteError};
@@ -35,13 +35,18 @@ impl Format {
                 let (name, mesh) = (&photosurface.facts.name, &photosurface.mesh);
                 match self {
                     Self::Glb | Self::Gltf => {
-                        Packing::new(name, &[mesh.positions()]).map_err(|error| {
+                        let around = Some(photosurface.around);
+                        Packing::new(name, &[mesh.positions()], around).map_err(|error| {
                             by_cause(error, photosurface.facts.relative_rapidity)
                         })?;
                     }
                     Self::Ply => check_positions(name, mesh)?,
                 }
-                Layer::from(&photosurface).scalars(wanted.attributes)?;
+                let numbers = match self {
+                    Self::Glb | Self::Gltf => Numbers::Single,
+                    Self::Ply => Numbers::Any,
+                };
+                Layer::from(&photosurface).scalars(wanted.attributes, numbers)?;
             }
         }
         Ok(())
@@ -95,7 +100,7 @@ mod tests {
                 r#"{ "rapidity": 350 }"#,
                 "1",
                 Some("the position of vertex 0 of the photosurface \"ball_step000\""),
-                Some("the Doppler factor of vertex 0 of the photosurface \"ball_step000\""),
+                None,
             ),
             (
                 r#"{ "beta": 0.5 }"#,

@@ -7,6 +7,20 @@ use std::path::Path;
 /// So many bytes wait in memory.
 const HELD_IN_MEMORY: usize = 1 << 16;
 
+/// What failed was not the output: data waits in a temporary file in `directory`.
+pub(super) fn of_temporary_file(directory: &Path, source: io::Error) -> io::Error {
+    // tempfile names its file behind what the system says; nobody else knows that file.
+    let text = source.to_string();
+    let said = text
+        .split_once(" at path ")
+        .map_or(&*text, |(said, _)| said);
+    let place = directory.display();
+    io::Error::new(
+        source.kind(),
+        format!("a temporary file in {place}: {said}"),
+    )
+}
+
 /// Text to which more is added at its end.
 #[derive(Default)]
 pub(super) struct LongText {
@@ -29,15 +43,20 @@ impl LongText {
     ) -> io::Result<()> {
         add(&mut self.held)?;
         if self.held.len() > HELD_IN_MEMORY {
-            if self.spilled.is_none() {
-                self.spilled = Some((tempfile::tempfile_in(directory)?, 0));
-            }
-            if let Some((file, length)) = &mut self.spilled {
-                file.write_all(&self.held)?;
-                *length += self.held.len() as u64;
-                self.held.clear();
-            }
+            let spilled = self.spill(directory);
+            spilled.map_err(|source| of_temporary_file(directory, source))?;
         }
+        Ok(())
+    }
+
+    fn spill(&mut self, directory: &Path) -> io::Result<()> {
+        let (mut file, length) = match self.spilled.take() {
+            Some(spilled) => spilled,
+            None => (tempfile::tempfile_in(directory)?, 0),
+        };
+        file.write_all(&self.held)?;
+        self.spilled = Some((file, length + self.held.len() as u64));
+        self.held.clear();
         Ok(())
     }
 

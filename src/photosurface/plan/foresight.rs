@@ -51,8 +51,9 @@ impl Plan<'_> {
         let facets: Vec<(f64, [DVec3; 3])> = facets.collect();
         let before = facets.iter().map(|(weight, _)| weight).sum();
         if !wanted.subdivide || velocity.rapidity() == 0.0 {
+            let around = self.around(&draft.seen);
             let prove = |((_, part), seen): (&(String, Part), &Seen)| {
-                self.certificate_of_unrefined(&draft.limits, part.mesh(), seen)
+                self.certificate_of_unrefined(&draft.limits, part.mesh(), seen, around)
             };
             return Foresight {
                 triangles: before,

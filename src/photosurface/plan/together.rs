@@ -59,7 +59,8 @@ impl<'a> Plan<'a> {
                 Surface {
                     name: name.clone(),
                     part: Cow::Owned(part.clone()),
-                    certificate: plan.certificate(limits, mesh, &seen, gap, counts),
+                    certificate: plan.certificate(limits, mesh, &seen, plan.travel, gap, counts),
+                    around: plan.travel.unwrap_or_default(),
                     seen,
                 }
             });
