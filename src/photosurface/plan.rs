@@ -15,8 +15,8 @@ use crate::mesh::{Mesh, Part, Shape};
 use crate::scene::Tolerance;
 use crate::spacetime::length;
 use crate::tessellate::{
-    Allowance, Bounds, Certificate, Counts, Precision, Singles, largest_gap, local_stretch,
-    nearest_point, refine, rounding_bound, survey,
+    Allowance, Bounds, Certificate, Counts, Precision, Refined, Singles, largest_gap,
+    local_stretch, nearest_point, refine, rounding_bound, survey,
 };
 
 pub(super) use foresight::Foresight;
@@ -71,6 +71,8 @@ pub(super) struct Plan<'a> {
     precision: Precision,
     /// The box around all steps where they share one mesh in a file, as morph targets.
     travel: Option<(DVec3, DVec3)>,
+    /// How many triangles there may be beyond those of the source.
+    granted: u64,
 }
 
 /// Parts of the object at rest and as seen, before any refinement, and what is allowed for that.
@@ -119,6 +121,7 @@ impl<'a> Plan<'a> {
         view: View,
         tolerance: Tolerance,
         wanted: Wanted,
+        granted: u64,
     ) -> Self {
         let seen = seen_parts(&view, &placed.parts);
         let aimed = tolerance.times(placed.loosening);
@@ -134,13 +137,14 @@ impl<'a> Plan<'a> {
             seen,
             precision: wanted.precision,
             travel: None,
+            granted,
         };
         if let Some(shaped) = &placed.shaped {
             let mesh = placed.parts[0].1.mesh();
             let rounding = plan.rounding(mesh, &plan.seen[0].extremes, 0.0);
             let target = CURVATURE_SHARE * plan.deviation_allowed(rounding, mesh);
             let shape = match wanted.subdivide {
-                true => shaped.shape.within(target / shaped.largest_scale),
+                true => shaped.within(target, placed.source_triangles.saturating_add(granted)),
                 false => shaped.shape.clone(),
             };
             plan.deviation = shape.deviation() * shaped.largest_scale;
@@ -172,19 +176,25 @@ impl<'a> Plan<'a> {
             limits,
         } = self.draft();
         let refining = wanted.subdivide && self.view.relative_velocity().rapidity() > 0.0;
-        let surface = |((name, part), seen): ((String, Cow<'a, Part>), Seen)| {
-            if !refining {
-                let mesh = part.mesh();
+        let refined = match refining {
+            true => {
+                let meshes: Vec<&Mesh> = parts.iter().map(|(_, part)| part.mesh()).collect();
+                let made = self.refine(&meshes, &limits, self.granted);
+                made.into_iter().map(Some).collect()
+            }
+            false => vec![None; parts.len()],
+        };
+        type Before<'a> = ((String, Cow<'a, Part>), Seen);
+        let surface = |(((name, part), seen), refined): (Before<'a>, Option<Refined>)| {
+            let mesh = part.mesh();
+            let Some(refined) = refined else {
                 return Surface {
                     certificate: self.certificate_of_unrefined(&limits, mesh, &seen),
                     name,
                     part,
                     seen,
                 };
-            }
-            let mesh = part.mesh();
-            let observer = self.view.observer_rest();
-            let refined = refine(mesh, observer, &limits.allowance, &limits.whole);
+            };
             let seen = if refined.mesh.positions().len() == mesh.positions().len() {
                 seen
             } else {
@@ -214,7 +224,17 @@ impl<'a> Plan<'a> {
                 parts.map(|(name, part)| (name, Cow::Owned(part))).collect()
             }
         };
-        parts.into_par_iter().zip(seen).map(surface).collect()
+        let before = parts.into_par_iter().zip(seen);
+        before.zip(refined).map(surface).collect()
+    }
+
+    /// Refines the meshes of all parts, within what is granted beyond the triangles of the source.
+    fn refine(&self, meshes: &[&Mesh], limits: &Limits, granted: u64) -> Vec<Refined> {
+        let most = self.placed.source_triangles.saturating_add(granted);
+        let before: usize = meshes.iter().map(|mesh| mesh.triangles().len()).sum();
+        let more = most.saturating_sub(before as u64);
+        let observer = self.view.observer_rest();
+        refine(meshes, observer, &limits.allowance, &limits.whole, more)
     }
 
     /// The certificate of a mesh that stays what it is.
