@@ -356,8 +356,8 @@ fn a_budget_holds_exactly_but_for_the_source() {
             12,
         ),
         ("--example cube --tolerance 5e-324".to_owned(), 72),
-        ("--example sphere --tolerance 5e-324".to_owned(), 7000),
-        ("--example sphere --tolerance deg:0.01".to_owned(), 7000),
+        ("--example sphere --tolerance 5e-324".to_owned(), 1260),
+        ("--example sphere --tolerance deg:0.01".to_owned(), 1260),
     ] {
         for budget in [0, 100, 2000] {
             let run = workplace.run(&format!(
