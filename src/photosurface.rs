@@ -17,6 +17,7 @@ use crate::mesh::{Appearance, Color, Material, Mesh, Model, Part, Shape};
 use crate::scene::{Attributes, MarkerRadius, Object, Scene, Source};
 use crate::spacetime::Velocity;
 use crate::tessellate::Precision;
+use budget::Granted;
 use names::UniqueNames;
 use plan::{Plan, Surface};
 
@@ -29,6 +30,9 @@ pub use seen::VertexData;
 /// The observer's marker in files.
 const MARKER_NAME: &str = "observer";
 const MARKER_RESOLUTION: u32 = 24;
+
+/// A shape of more facets than it may have is tried with so much larger ones, and again.
+const COARSER: f64 = 1.1;
 
 /// A scene with the geometry of its objects, placed in their rest frames: all that photosurfaces need.
 ///
@@ -120,6 +124,10 @@ struct Placed {
     shaped: Option<Shaped>,
     /// Aim at this many times the tolerance.
     loosening: f64,
+    /// How many triangles stay, whatever a budget says: those of meshes, or of the coarsest form of a shape.
+    source_triangles: u64,
+    /// How many triangles there may be, if there is a limit.
+    granted: Option<Granted>,
 }
 
 /// A shape, to be made as fine as its tolerance asks for.
@@ -156,10 +164,17 @@ impl Stage {
                 let name = names.unique(&wanted_name(object, &part, count));
                 (name, part.transformed(&object.model_to_rest()))
             });
+            let parts: Vec<(String, Part)> = parts.collect();
+            let shaped = Shaped::of(object);
             objects.push(Placed {
-                parts: parts.collect(),
-                shaped: Shaped::of(object),
+                source_triangles: match &shaped {
+                    Some(shaped) => shaped.fewest_triangles(&parts),
+                    None => triangle_count(&parts),
+                },
+                parts,
+                shaped,
                 loosening: 1.0,
+                granted: None,
             });
         }
         Self {
@@ -268,7 +283,8 @@ impl Stage {
         wanted: Wanted,
     ) -> Plan<'a> {
         let view = self.view(object, self.scene.steps()[step]);
-        Plan::new(placed, view, self.scene.tolerance(object), wanted)
+        let tolerance = self.scene.tolerance(object);
+        Plan::new(placed, view, tolerance, wanted, placed.granted(step))
     }
 
     fn photosurface(
@@ -322,6 +338,31 @@ impl Shaped {
         }
     }
 
+    /// Of how many triangles its coarsest form is made; `parts` are those of any.
+    fn fewest_triangles(&self, parts: &[(String, Part)]) -> u64 {
+        let coarsest = self.shape.within(f64::INFINITY);
+        if coarsest == self.shape {
+            triangle_count(parts)
+        } else if coarsest.deviation() > 0.0 {
+            coarsest.triangle_count()
+        } else {
+            triangle_count(&self.parts_like(&coarsest, parts))
+        }
+    }
+
+    /// The shape with the coarsest facets that are not farther off than `deviation` at rest, or the finest ones that are
+    /// not more than `most`; the coarsest of all where that are more.
+    fn within(&self, deviation: f64, most: u64) -> Shape {
+        let mut shape = self.shape.within(deviation / self.largest_scale);
+        let coarsest = self.shape.within(f64::INFINITY);
+        let mut deviation = shape.deviation();
+        while shape.triangle_count() > most && deviation < coarsest.deviation() {
+            deviation *= COARSER;
+            shape = self.shape.within(deviation);
+        }
+        shape
+    }
+
     /// The parts of the same shape with another resolution; names and materials are those of `parts`.
     fn parts_like(&self, shape: &Shape, parts: &[(String, Part)]) -> Vec<(String, Part)> {
         let model = shape
@@ -344,6 +385,11 @@ fn wanted_name(object: &Object, part: &Part, parts: usize) -> String {
         1 => object.name.clone(),
         _ => format!("{}_{}", object.name, part.name),
     }
+}
+
+fn triangle_count(parts: &[(String, Part)]) -> u64 {
+    let triangles = parts.iter().map(|(_, part)| part.mesh().triangles().len());
+    triangles.sum::<usize>() as u64
 }
 
 fn marker(name: &str, radius: MarkerRadius) -> Part {

@@ -323,3 +323,87 @@ fn whether_an_angle_can_be_kept_is_foretold() {
         );
     }
 }
+
+/// Triangles that had nothing to do with a budget: points inside a triangle with the observer in its plane, a hundred
+/// times as many; charts that were tried in vain; edges beyond what was foretold; mesh after mesh of a morph.
+#[test]
+fn a_budget_holds_exactly_but_for_the_source() {
+    let workplace = Workplace::new();
+    let plate = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\n";
+    workplace.write("plate.obj", &format!("{plate}f 1 2 3 4\n"));
+    workplace.write("flag.obj", &format!("{plate}o a\nf 1 2 3\no b\nf 1 3 4\n"));
+    let inside = "--direction 1,0,0 --observer 0.13,0,-0.21";
+    let steep = "--rapidity 35.69 --steps=-51450,0,3939621,-24847 --tolerance 1.0004e-8";
+    let thin = "--rapidity 20 --steps=-1,0,2 --direction 1,2,3 --tolerance deg:1";
+    for (flags, source) in [
+        (
+            format!("plate.obj --beta 0.9 {inside} --tolerance deg:0.01"),
+            2,
+        ),
+        (
+            format!("flag.obj --rapidity 14.4 {inside} --tolerance deg:0.005"),
+            2,
+        ),
+        (
+            format!("flag.obj --beta 0.9 {inside} --tolerance 5e-324"),
+            2,
+        ),
+        (format!("plate.obj {steep}"), 8),
+        (format!("plate.obj {steep} --animate"), 8),
+        (format!("plate.obj {thin} --animate=morph"), 2),
+        (
+            "--example cube --gamma 1000 --tolerance deg:0.01 --animate=morph".to_owned(),
+            12,
+        ),
+        ("--example cube --tolerance 5e-324".to_owned(), 72),
+        ("--example sphere --tolerance 5e-324".to_owned(), 1260),
+        ("--example sphere --tolerance deg:0.01".to_owned(), 1260),
+    ] {
+        for budget in [0, 100, 2000] {
+            let run = workplace.run(&format!(
+                "export {flags} --max-triangles {budget} -o out.glb --report report.json"
+            ));
+            assert!(run.status == 0 || run.status == 1, "{run}");
+            let report = workplace.read_json("report.json");
+            let objects = report["objects"].as_array().expect("objects");
+            let first = objects
+                .iter()
+                .filter(|object| object["step"] == 0 || !flags.contains("morph"));
+            let count =
+                |object: &serde_json::Value| object["certificate"]["triangles_out"].as_u64();
+            let made: u64 = first.map(|object| count(object).expect("a count")).sum();
+            assert!(
+                made <= budget.max(source),
+                "{made} of {budget}: {flags}\n{run}"
+            );
+        }
+    }
+}
+
+/// With an angle as tolerance and the observer in a facet's plane, what was foretold was too little a thousandfold.
+#[test]
+fn what_an_observer_in_a_plane_asks_for_is_foretold() {
+    let workplace = Workplace::new();
+    workplace.write(
+        "plate.obj",
+        "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 2 3 4\n",
+    );
+    for observer in ["0.13,0,-0.21", "1.3,0,0.4", "0.13,1e-6,-0.21"] {
+        for tolerance in ["deg:3", "deg:1", "deg:0.3", "deg:0.1"] {
+            let flags = format!(
+                "plate.obj --beta 0.9 --direction 1,0,0 --observer {observer} --tolerance {tolerance}"
+            );
+            let check = workplace.run(&format!("check {flags}"));
+            let (_, predicted) = check.stdout_text().rsplit_once("about ").expect("a count");
+            let digits: String = predicted.chars().filter(char::is_ascii_digit).collect();
+            let predicted: f64 = digits.parse().expect("a count");
+            workplace.run(&format!("export {flags} -o out.glb --report report.json"));
+            let made = triangles(&workplace.read_json("report.json")) as f64;
+            let ratio = predicted / made;
+            assert!(
+                (0.5..1.5).contains(&ratio),
+                "{flags}: {predicted} predicted, {made} made"
+            );
+        }
+    }
+}

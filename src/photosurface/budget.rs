@@ -1,8 +1,12 @@
 //! What the tolerances of a scene will take, and what a budget leaves of them.
+//!
+//! Predictions steer, counts hold: aims are loosened until about as much is foretold as there is, and then each object
+//! is granted so many triangles at each step that all together are within the budget, whatever was foretold.
 
 use super::plan::Foresight;
 use super::{Placed, Stage, Wanted};
 use crate::mesh::{Mesh, Part};
+use crate::tessellate::shares;
 
 /// Room that a budget leaves for predictions, which are good to about a half (`tests/cli.rs`).
 const PREDICTION_ROOM: f64 = 1.6;
@@ -41,6 +45,15 @@ pub struct Prediction {
     pub reachable: bool,
 }
 
+/// How many triangles an object may have beyond those of its source.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Granted {
+    /// At each step.
+    steps: Vec<u64>,
+    /// Of one mesh for all steps.
+    together: u64,
+}
+
 impl Stage {
     /// What each object will take, in the order of the scene.
     pub fn predictions(&self, wanted: Wanted) -> Vec<Prediction> {
@@ -48,29 +61,32 @@ impl Stage {
         objects
             .map(|object| {
                 let foresight = self.foresee(object, wanted);
+                let most = self.most_triangles(object);
                 Prediction {
-                    triangles: foresight.triangles,
-                    triangles_in: foresight.before,
-                    reachable: foresight.reachable,
+                    triangles: foresight.triangles.min(most),
+                    triangles_in: foresight.before.min(most),
+                    reachable: foresight.reachable && foresight.triangles <= most,
                 }
             })
             .collect()
     }
 
-    /// The same stage with looser aims, so that all its photosurfaces together have about as many triangles as
-    /// `most`, or fewer; and for each object how many times looser, 1 where it is left alone.
+    /// The same stage with looser aims, so that all its photosurfaces together have at most `most` triangles; and for
+    /// each object how many times looser, 1 where it is left alone.
     ///
     /// Objects that need less than an equal share of what is left by the others get what they need; the others
     /// share the rest, and within each the largest gaps are closed first. Certificates are still against the
-    /// tolerances of the scene. Triangles that are there before any refinement stay, even if they are more.
+    /// tolerances of the scene. Triangles that a source has stay, even if they are more: those of its meshes, and of a
+    /// round shape as many as the coarsest of its kind has.
+    ///
+    /// The limit holds exactly, also where a prediction is wrong: what is granted is known beforehand, and refinement
+    /// stops when it is used up. Of [`Stage::morphing`] it counts the one mesh of each part.
     #[must_use]
     pub fn within_budget(mut self, wanted: Wanted, most: u64) -> (Self, Vec<f64>) {
-        let needed = |stage: &Self, object| {
-            let Foresight {
-                triangles, before, ..
-            } = stage.foresee(object, wanted);
-            before + PREDICTION_ROOM * (triangles - before)
-        };
+        for placed in &mut self.objects {
+            placed.granted = None;
+        }
+        let needed = |stage: &Self, object| stage.foresee(object, wanted).needed();
         let mut objects: Vec<(usize, f64)> = (0..self.objects.len())
             .map(|object| (object, needed(&self, object)))
             .collect();
@@ -84,7 +100,62 @@ impl Stage {
             left = (left - need).max(0.0);
         }
         let loosening = self.objects.iter().map(|placed| placed.loosening).collect();
-        (self, loosening)
+        (self.granting(wanted, most), loosening)
+    }
+
+    /// The same stage with at most `most` triangles, or those of the source, and the same aims.
+    pub(crate) fn granting(mut self, wanted: Wanted, most: u64) -> Self {
+        if !wanted.subdivide {
+            return self;
+        }
+        let steps = self.scene.steps().len();
+        let sources: Vec<u64> = (self.objects.iter())
+            .map(|placed| placed.source_triangles)
+            .collect();
+        let all: u64 = sources.iter().sum();
+        // What each object needs at each step beyond its source.
+        let needs: Vec<Vec<f64>> = (0..self.objects.len())
+            .map(|object| {
+                let foreseen = self.foresee_some(object, wanted);
+                let need = |step: usize| {
+                    let last = (steps - 1).max(1) as f64;
+                    let at = step as f64 / last * (foreseen.len() - 1) as f64;
+                    let need = foreseen[at.round() as usize].needed() - sources[object] as f64;
+                    // Infinity and NaN are as good as all that there is.
+                    if need < most as f64 {
+                        need.max(0.0)
+                    } else {
+                        most as f64
+                    }
+                };
+                (0..steps).map(need).collect()
+            })
+            .collect();
+        let at_steps: Vec<(f64, u64)> = (needs.iter().zip(&sources))
+            .flat_map(|(needs, &source)| needs.iter().map(move |&need| (need, source)))
+            .collect();
+        let at_steps = granted(
+            most.saturating_sub(all.saturating_mul(steps as u64)),
+            &at_steps,
+        );
+        let together: Vec<(f64, u64)> = (needs.iter().zip(&sources))
+            .map(|(needs, &source)| (needs.iter().sum(), source))
+            .collect();
+        let together = granted(most.saturating_sub(all), &together);
+        let granted = at_steps.chunks(steps).zip(together);
+        for (placed, (steps, together)) in self.objects.iter_mut().zip(granted) {
+            let steps = steps.to_vec();
+            placed.granted = Some(Granted { steps, together });
+        }
+        self
+    }
+
+    /// The most that an object can have at all steps together.
+    fn most_triangles(&self, object: usize) -> f64 {
+        let placed = &self.objects[object];
+        let source = placed.source_triangles as f64;
+        let steps = 0..self.scene.steps().len();
+        steps.map(|step| source + placed.granted(step) as f64).sum()
     }
 
     /// Loosens the aim of one object until it needs no more than its share, and hardly less; what it needs then. An
@@ -129,6 +200,23 @@ impl Stage {
 
     /// All steps together.
     fn foresee(&self, object: usize, wanted: Wanted) -> Foresight {
+        let foreseen = self.foresee_some(object, wanted);
+        let each = self.scene.steps().len() as f64 / foreseen.len() as f64;
+        let mut sum = Foresight {
+            triangles: 0.0,
+            before: 0.0,
+            reachable: true,
+        };
+        for foresight in foreseen {
+            sum.triangles += foresight.triangles * each;
+            sum.before += foresight.before * each;
+            sum.reachable &= foresight.reachable;
+        }
+        sum
+    }
+
+    /// Each step, or some of many, evenly spread.
+    fn foresee_some(&self, object: usize, wanted: Wanted) -> Vec<Foresight> {
         let (object, placed) = (&self.scene.objects()[object], &self.objects[object]);
         let steps = self.scene.steps().len();
         let looked_at = steps.min(STEPS_LOOKED_AT);
@@ -138,25 +226,54 @@ impl Stage {
             Some((sketch, weights)) => (sketch, weights.clone()),
             None => (placed, vec![1.0; placed.parts.len()]),
         };
-        let mut sum = Foresight {
-            triangles: 0.0,
-            before: 0.0,
-            reachable: true,
-        };
-        let each = steps as f64 / looked_at as f64;
-        for index in 0..looked_at {
+        let foresee = |index: usize| {
             let step = index * (steps - 1) / (looked_at - 1).max(1);
             let plan = self.plan(object, placed, step, wanted);
-            let foresight = plan.foresee(wanted, &weights);
-            sum.triangles += foresight.triangles * each;
-            sum.before += foresight.before * each;
-            sum.reachable &= foresight.reachable;
-        }
-        sum
+            plan.foresee(wanted, &weights)
+        };
+        (0..looked_at).map(foresee).collect()
+    }
+}
+
+/// Of what there is, what each needs and then shares of the rest, or shares of all in proportion to what each needs. With
+/// each need, the number of triangles of its source.
+fn granted(whole: u64, needs: &[(f64, u64)]) -> Vec<u64> {
+    let needed: Vec<f64> = needs.iter().map(|(need, _)| need.ceil()).collect();
+    let all: f64 = needed.iter().sum();
+    if all >= whole as f64 {
+        return shares(whole, &needed);
+    }
+    let needed = needed.into_iter().map(|need| need as u64);
+    let rest = whole - all as u64;
+    // What was not foreseen may be anywhere.
+    let weights = needs
+        .iter()
+        .map(|&(need, source)| need + source as f64 + 1.0);
+    let rest = shares(rest, &weights.collect::<Vec<f64>>());
+    needed.zip(rest).map(|(need, more)| need + more).collect()
+}
+
+impl Foresight {
+    /// With room for what a prediction may miss.
+    fn needed(&self) -> f64 {
+        self.before + PREDICTION_ROOM * (self.triangles - self.before)
     }
 }
 
 impl Placed {
+    /// How many more there may be at a step.
+    pub(super) fn granted(&self, step: usize) -> u64 {
+        let granted = self.granted.as_ref();
+        granted.map_or(u64::MAX, |granted| granted.steps[step])
+    }
+
+    /// How many more there may be where all steps share one mesh.
+    pub(super) fn granted_together(&self) -> u64 {
+        self.granted
+            .as_ref()
+            .map_or(u64::MAX, |granted| granted.together)
+    }
+
     /// A sample of about `most` triangles where there are more, and for each part of how many each is a sample.
     fn sketch(&self, most: usize) -> Option<(Self, Vec<f64>)> {
         let count = |part: &Part| part.mesh().triangles().len();
@@ -179,6 +296,8 @@ impl Placed {
             parts,
             shaped: None,
             loosening: self.loosening,
+            source_triangles: self.source_triangles,
+            granted: None,
         };
         Some((sketch, weights))
     }

@@ -17,7 +17,8 @@ impl Stage {
                 .map(|step| self.plan(object, placed, step, wanted))
                 .collect();
             let views: Vec<_> = plans.iter().map(|plan| *plan.view()).collect();
-            let parts = Plan::carry_out_together(plans, wanted).into_iter();
+            let parts =
+                Plan::carry_out_together(plans, wanted, placed.granted_together()).into_iter();
             parts.map(move |surfaces| {
                 let steps = surfaces.into_iter().zip(&views).enumerate();
                 steps

@@ -15,8 +15,8 @@ use crate::mesh::{Mesh, Part, Shape};
 use crate::scene::Tolerance;
 use crate::spacetime::length;
 use crate::tessellate::{
-    Allowance, Bounds, Certificate, Counts, Precision, Singles, largest_gap, local_stretch,
-    nearest_point, refine, rounding_bound, survey,
+    Allowance, Bounds, Certificate, Counts, Precision, Refined, Singles, largest_gap,
+    local_stretch, nearest_point, refine, rounding_bound, survey,
 };
 
 pub(super) use foresight::Foresight;
@@ -71,6 +71,8 @@ pub(super) struct Plan<'a> {
     precision: Precision,
     /// The box around all steps where they share one mesh in a file, as morph targets.
     travel: Option<(DVec3, DVec3)>,
+    /// How many triangles there may be beyond those of the source.
+    granted: u64,
 }
 
 /// Parts of the object at rest and as seen, before any refinement, and what is allowed for that.
@@ -130,6 +132,7 @@ impl<'a> Plan<'a> {
         view: View,
         tolerance: Tolerance,
         wanted: Wanted,
+        granted: u64,
     ) -> Self {
         let seen = seen_parts(&view, &placed.parts);
         let aimed = tolerance.times(placed.loosening);
@@ -145,6 +148,7 @@ impl<'a> Plan<'a> {
             seen,
             precision: wanted.precision,
             travel: None,
+            granted,
         };
         if let Some(shaped) = &placed.shaped {
             let mesh = placed.parts[0].1.mesh();
@@ -152,7 +156,7 @@ impl<'a> Plan<'a> {
             let rounding = plan.rounding(mesh, &plan.seen[0].extremes, around, 0.0);
             let target = CURVATURE_SHARE * plan.deviation_allowed(rounding, mesh);
             let shape = match wanted.subdivide {
-                true => shaped.shape.within(target / shaped.largest_scale),
+                true => shaped.within(target, placed.source_triangles.saturating_add(granted)),
                 false => shaped.shape.clone(),
             };
             plan.deviation = shape.deviation() * shaped.largest_scale;
@@ -184,10 +188,19 @@ impl<'a> Plan<'a> {
             limits,
         } = self.draft();
         let refining = wanted.subdivide && self.view.relative_velocity().rapidity() > 0.0;
-        let made = |((name, part), seen): ((String, Cow<'a, Part>), Seen)| {
+        let refined = match refining {
+            true => {
+                let meshes: Vec<&Mesh> = parts.iter().map(|(_, part)| part.mesh()).collect();
+                let made = self.refine(&meshes, &limits, self.granted);
+                made.into_iter().map(Some).collect()
+            }
+            false => vec![None; parts.len()],
+        };
+        type Before<'a> = ((String, Cow<'a, Part>), Seen);
+        let made = |(((name, part), seen), refined): (Before<'a>, Option<Refined>)| {
             let mesh = part.mesh();
-            let observer = self.view.observer_rest();
-            if !refining {
+            let Some(refined) = refined else {
+                let observer = self.view.observer_rest();
                 let found = survey(mesh, observer, f64::INFINITY, &limits.whole);
                 let counts = Counts {
                     triangles_in: mesh.triangles().len(),
@@ -201,8 +214,7 @@ impl<'a> Plan<'a> {
                     gap: found.gap,
                     counts,
                 };
-            }
-            let refined = refine(mesh, observer, &limits.allowance, &limits.whole);
+            };
             let seen = if refined.mesh.positions().len() == mesh.positions().len() {
                 seen
             } else {
@@ -233,7 +245,8 @@ impl<'a> Plan<'a> {
                 parts.map(|(name, part)| (name, Cow::Owned(part))).collect()
             }
         };
-        let made: Vec<Unproven<'a>> = parts.into_par_iter().zip(seen).map(made).collect();
+        let before = parts.into_par_iter().zip(seen);
+        let made: Vec<Unproven<'a>> = before.zip(refined).map(made).collect();
         // Refinement reaches beyond the corners that there were.
         let around = self.around(made.iter().map(|made| &made.seen));
         let proven = |made: Unproven<'a>| Surface {
@@ -257,6 +270,15 @@ impl<'a> Plan<'a> {
     /// are the same numbers in each.
     fn around<'s>(&self, seen: impl IntoIterator<Item = &'s Seen>) -> Option<(DVec3, DVec3)> {
         self.travel.or_else(|| bounds(seen))
+    }
+
+    /// Refines the meshes of all parts, within what is granted beyond the triangles of the source.
+    fn refine(&self, meshes: &[&Mesh], limits: &Limits, granted: u64) -> Vec<Refined> {
+        let most = self.placed.source_triangles.saturating_add(granted);
+        let before: usize = meshes.iter().map(|mesh| mesh.triangles().len()).sum();
+        let more = most.saturating_sub(before as u64);
+        let observer = self.view.observer_rest();
+        refine(meshes, observer, &limits.allowance, &limits.whole, more)
     }
 
     /// The certificate of a mesh that stays what it is.

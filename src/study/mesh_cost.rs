@@ -114,6 +114,7 @@ pub(super) fn mesh_cost(
     if predicted_triangles > settings.most_triangles as f64 {
         return Ok(cost);
     }
+    let stage = stage.granting(wanted, settings.most_triangles);
     let counts_memory = restart_peak();
     let first = run(&stage, wanted, tolerance)?;
     let peak_memory_bytes = counts_memory.then(peak_bytes).flatten();

@@ -4,6 +4,10 @@ use glam::DVec3;
 
 use crate::light_cone::View;
 
+/// What part of an angle the gap gets where other errors take more than there is; the certificate tells. Without it
+/// they would ask for triangles of no size at all.
+const LEAST_SHARE: f64 = 0.1;
+
 /// The largest gap `e`, in the rest frame before the factor `gamma beta`, that an edge or a triangle may
 /// have.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +36,24 @@ pub(crate) enum Allowance {
 }
 
 impl Allowance {
+    /// So many times as much everywhere.
+    pub(super) fn times(&self, factor: f64) -> Self {
+        match *self {
+            Self::Everywhere(gap) => Self::Everywhere(gap * factor),
+            Self::Angle {
+                view,
+                share,
+                less,
+                least,
+            } => Self::Angle {
+                view,
+                share: share * factor,
+                less: less * factor,
+                least: least * factor,
+            },
+        }
+    }
+
     /// What is allowed for the edge or triangle between these offsets from the observer.
     pub(crate) fn between(&self, offsets: &[DVec3]) -> f64 {
         match self {
@@ -41,7 +63,10 @@ impl Allowance {
                 share,
                 less,
                 least,
-            } => (nearest(view, offsets) * share - less).max(*least),
+            } => {
+                let whole = nearest(view, offsets) * share;
+                (whole - less).max(LEAST_SHARE * whole).max(*least)
+            }
         }
     }
 
@@ -54,7 +79,10 @@ impl Allowance {
                 share,
                 less,
                 least,
-            } => nearest(view, offsets) * share - less < *least,
+            } => {
+                let whole = nearest(view, offsets) * share;
+                whole - less < (LEAST_SHARE * whole).max(*least)
+            }
         }
     }
 }

@@ -33,11 +33,21 @@ pub(super) fn predicted_edge_pieces(a: DVec3, b: DVec3, allowance: &Allowance) -
 /// `h r^(-3/2)` have equal gaps, and as `s = h sinh t` turns it into that of `(cosh t)^(-1/2)`, it is smooth even
 /// where the line passes close by. The exact gap of each piece decides; if one is too large, one piece more.
 ///
-/// The caller gives the ends in a canonical order; the result is a function of them and nothing else.
-pub(super) fn division(a: DVec3, b: DVec3, observer: DVec3, allowance: &Allowance) -> Vec<f64> {
+/// The caller gives the ends in a canonical order; the result is a function of them and nothing else, or `None` where
+/// it would have more than `most` parameters.
+pub(super) fn division(
+    a: DVec3,
+    b: DVec3,
+    observer: DVec3,
+    allowance: &Allowance,
+    most: usize,
+) -> Option<Vec<f64>> {
     let (offset_a, offset_b) = (a - observer, b - observer);
     if !needs_division(offset_a, offset_b, allowance) {
-        return vec![];
+        return Some(vec![]);
+    }
+    if most == 0 {
+        return None;
     }
     let fits = |parameters: &[f64]| {
         let mut from = offset_a;
@@ -48,12 +58,15 @@ pub(super) fn division(a: DVec3, b: DVec3, observer: DVec3, allowance: &Allowanc
     };
     // Most edges are short against their distance: one cut in the middle will do.
     if fits(&[0.5]) {
-        return vec![0.5];
+        return Some(vec![0.5]);
     }
 
     let scale = Scale::new(offset_a, offset_b, allowance);
     let mut pieces = scale.pieces().max(2);
     loop {
+        if pieces - 1 > most {
+            return None;
+        }
         let parameters = scale.parameters(pieces);
         let distinct = parameters.windows(2).all(|pair| pair[0] < pair[1]);
         let inside = parameters
@@ -61,10 +74,10 @@ pub(super) fn division(a: DVec3, b: DVec3, observer: DVec3, allowance: &Allowanc
             .all(|&parameter| 0.0 < parameter && parameter < 1.0);
         if !(distinct && inside) || pieces > MAX_PIECES {
             // As fine as numbers go: the gap that is left is in the certificate.
-            return scale.parameters_within_reach(pieces);
+            return Some(scale.parameters_within_reach(pieces));
         }
         if fits(&parameters) {
-            return parameters;
+            return Some(parameters);
         }
         pieces += 1 + pieces / 16;
     }

@@ -1,13 +1,14 @@
-//! A whole mesh refined: edges first, each once, then triangles, each by itself.
-
-use std::collections::HashMap;
+//! Whole meshes refined: edges first, each once, then triangles, each by itself.
 
 use glam::{DVec3, DVec4, Vec2, Vec4};
 use rayon::prelude::*;
 
-use super::edge::{EDGE_SHARE, division, needs_division, point_between};
-use super::sky::{Corner, Pieces, divide};
-use super::survey::survey;
+use super::edge::{EDGE_SHARE, point_between};
+use super::edges::{Count, Edges, Origin, canonical, divided_edges, sides};
+use super::minimum::pieces_inside;
+use super::room::Room;
+use super::sky::{Corner, Grant, Pieces, divide};
+use super::survey::{Survey, survey};
 use super::{Allowance, minimum_triangles, triangle_gap};
 use crate::mesh::Mesh;
 
@@ -17,6 +18,12 @@ const MOST_POINTS: f64 = 16.0;
 /// More points than this inside one triangle are a tolerance that cannot be meant: behind a fast observer the fewest
 /// triangles that theory allows go with `gamma`.
 const MAX_POINTS: f64 = 4_194_304.0;
+
+/// Where a limit leaves too little for what is allowed, so many times as much is; then twice that factor, and so on.
+const LOOSER: f64 = 4.0;
+
+/// Where that has gone so far, edges stay whole.
+const LOOSEST: f64 = 1e100;
 
 /// A mesh refined, and how well.
 #[derive(Clone, Debug)]
@@ -31,203 +38,247 @@ pub(crate) struct Refined {
     pub(crate) minimum_triangles: f64,
 }
 
-/// Refines `mesh` as seen from `observer`, both in the rest frame, until every gap is within the allowance; `whole` is
-/// what would be allowed if gaps were all there is.
+/// Refines the meshes of one object as seen from `observer`, both in the rest frame, until every gap is within the
+/// allowance; `whole` is what would be allowed if gaps were all there is.
 ///
-/// Vertices of the mesh stay what they are, in their order; new ones follow, first those on edges. The new
-/// positions lie on the flat triangles to rounding, equal for equal edges whatever else the vertices carry;
-/// attributes are interpolated, directions brought to unit length. Same result for any number of threads.
+/// Vertices of a mesh stay what they are, in their order; new ones follow, first those on edges. The new
+/// positions lie on the flat triangles to rounding, equal for equal edges whatever else the vertices carry, in one mesh
+/// or in several; attributes are interpolated, directions brought to unit length. Same result for any number of threads.
+///
+/// All together have at most `most_more` triangles more than before. Where that is too little, edges and
+/// triangles alike aim at gaps larger by one factor, or triangles whose need was not foreseen stop when their share is
+/// used up; no cracks appear.
 pub(crate) fn refine(
-    mesh: &Mesh,
+    meshes: &[&Mesh],
     observer: DVec3,
     allowance: &Allowance,
     whole: &Allowance,
-) -> Refined {
+    most_more: u64,
+) -> Vec<Refined> {
     // What has a small gap at a glance is never divided, nor are its edges: their gaps are not larger.
     let small = match allowance {
         Allowance::Everywhere(allowed) => EDGE_SHARE * allowed,
         Allowance::Angle { .. } => 0.0,
     };
-    let found = survey(mesh, observer, small, whole);
-    let mut refined = Refined {
-        mesh: mesh.clone(),
-        gap: found.gap,
-        complete: true,
-        minimum_triangles: found.minimum_triangles,
-    };
-    if !found.above.is_empty() {
-        divide_some(mesh, &found.above, observer, allowance, &mut refined);
-    }
-    refined
-}
-
-/// Divides those of some triangles that have to be, in their order; all others stay what they are.
-fn divide_some(
-    mesh: &Mesh,
-    looked_at: &[u32],
-    observer: DVec3,
-    allowance: &Allowance,
-    refined: &mut Refined,
-) {
-    let positions = mesh.positions();
-    let all = mesh.triangles();
-    let edges = divided_edges(mesh, looked_at, observer, allowance);
-    let outcomes: Vec<Outcome> = looked_at
+    let found: Vec<Survey> = meshes
         .par_iter()
-        .map(|&index| outcome(all[index as usize], positions, observer, &edges, allowance))
+        .map(|mesh| survey(mesh, observer, small, whole))
         .collect();
-
-    let mut origins = edges.origins;
-    let mut triangles = Vec::with_capacity(all.len());
-    let mut done = 0;
-    for (outcome, &index) in outcomes.into_iter().zip(looked_at) {
-        let index = index as usize;
-        triangles.extend_from_slice(&all[done..index]);
-        done = index + 1;
-        let corners = all[index];
-        match outcome {
-            Outcome::Kept { gap, complete } => {
-                refined.gap = refined.gap.max(gap);
-                refined.complete &= complete;
-                triangles.push(corners);
-            }
-            Outcome::Divided { boundary, pieces } => {
-                refined.gap = refined.gap.max(pieces.gap);
-                refined.complete &= pieces.complete;
-                let first = (positions.len() + origins.len()) as u32;
-                let index = |local: u32| match boundary.get(local as usize) {
-                    Some(&vertex) => vertex,
-                    None => first + local - boundary.len() as u32,
-                };
-                triangles.extend(pieces.triangles.iter().map(|triangle| triangle.map(index)));
-                origins.extend(
-                    pieces
-                        .inside
-                        .iter()
-                        .map(|&weights| Origin { corners, weights }),
+    let outline = Outline::within(meshes, &found, observer, allowance, most_more);
+    let divided: Vec<Divided> = outline.divided(&found);
+    let weights = divided.iter().map(|divided| divided.need.inside);
+    let mut room = Room::new(weights.collect(), outline.more / 2);
+    let mut outcomes: Vec<Option<Outcome>> = divided.iter().map(|_| None).collect();
+    loop {
+        let turn = room.turn();
+        if turn.is_empty() {
+            break;
+        }
+        let is_last = room.is_last_turn();
+        let made: Vec<Outcome> = turn
+            .par_iter()
+            .map(|&(number, granted)| {
+                let Divided { mesh, index, need } = divided[number];
+                let corners = meshes[mesh].triangles()[index as usize];
+                let (positions, edges) = (meshes[mesh].positions(), &outline.edges[mesh]);
+                let (boundary, points) = boundary(corners, positions, observer, edges);
+                let pieces = divide(
+                    corners.map(|corner| positions[corner as usize]),
+                    observer,
+                    &points,
+                    &outline.allowance,
+                    need.most_points(points.len()),
+                    Grant { granted, is_last },
                 );
-            }
+                Outcome { boundary, pieces }
+            })
+            .collect();
+        for ((number, _), outcome) in turn.into_iter().zip(made) {
+            room.used(number, outcome.pieces.inside.len(), outcome.pieces.is_short);
+            outcomes[number] = Some(outcome);
         }
     }
-    triangles.extend_from_slice(&all[done..]);
-    if !origins.is_empty() {
-        refined.mesh = interpolated(mesh, &origins, triangles);
-    }
-}
 
-/// What becomes of one triangle.
-enum Outcome {
-    Kept {
-        gap: f64,
-        complete: bool,
-    },
-    Divided {
-        /// The vertices of the boundary, counter-clockwise from the first corner on.
-        boundary: Vec<u32>,
-        pieces: Pieces,
-    },
-}
-
-/// Where a new vertex comes from.
-#[derive(Clone, Copy, Debug)]
-struct Origin {
-    corners: [u32; 3],
-    weights: DVec3,
-}
-
-/// The new vertices on the edges of a mesh.
-struct Edges {
-    /// By the two vertices, in the order of the rule: where the edge is divided, and the first new vertex.
-    divisions: HashMap<[u32; 2], (Vec<f64>, u32)>,
-    origins: Vec<Origin>,
-}
-
-/// The two vertices of an edge in an order that depends on their positions: both sides of a seam have the
-/// same one.
-fn canonical([a, b]: [u32; 2], positions: &[DVec3]) -> [u32; 2] {
-    // Adding zero makes one zero of the two: they are one place.
-    let key = |vertex: u32| positions[vertex as usize].to_array().map(|x| x + 0.0);
-    let order = |p: [f64; 3], q: [f64; 3]| {
-        p.iter()
-            .zip(q)
-            .map(|(p, q)| p.total_cmp(&q))
-            .find(|order| order.is_ne())
-    };
-    match order(key(a), key(b)) {
-        Some(std::cmp::Ordering::Greater) => [b, a],
-        None if a > b => [b, a],
-        _ => [a, b],
-    }
-}
-
-fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]]
-}
-
-fn divided_edges(mesh: &Mesh, looked_at: &[u32], observer: DVec3, allowance: &Allowance) -> Edges {
-    let positions = mesh.positions();
-    let needs_division = |[a, b]: [u32; 2]| {
-        let offset = |vertex: u32| positions[vertex as usize] - observer;
-        needs_division(offset(a), offset(b), allowance)
-    };
-    let mut edges: Vec<[u32; 2]> = looked_at
-        .par_iter()
-        .flat_map_iter(|&index| sides(mesh.triangles()[index as usize]))
-        .filter(|&side| needs_division(side))
-        .map(|side| canonical(side, positions))
-        .collect();
-    edges.par_sort_unstable();
-    edges.dedup();
-    let divisions: Vec<Vec<f64>> = edges
-        .par_iter()
-        .map(|&[a, b]| {
-            division(
-                positions[a as usize],
-                positions[b as usize],
-                observer,
-                allowance,
-            )
+    let mut outcomes = outcomes.into_iter().flatten();
+    let (looser, needs) = (outline.looser, outline.needs);
+    let parts = found.into_iter().zip(outline.edges).zip(needs);
+    let parts: Vec<_> = parts
+        .map(|((found, edges), needs)| {
+            let divided = needs.iter().filter(|need| need.is_divided).count();
+            let outcomes: Vec<Outcome> = outcomes.by_ref().take(divided).collect();
+            (found, edges, needs, outcomes)
         })
         .collect();
-
-    let mut result = Edges {
-        divisions: HashMap::with_capacity(edges.len()),
-        origins: vec![],
-    };
-    for ([a, b], parameters) in edges.into_iter().zip(divisions) {
-        let first = (positions.len() + result.origins.len()) as u32;
-        result
-            .origins
-            .extend(parameters.iter().map(|&parameter| Origin {
-                corners: [a, b, b],
-                weights: DVec3::new(1.0 - parameter, parameter, 0.0),
-            }));
-        result.divisions.insert([a, b], (parameters, first));
-    }
-    result
+    let refined = meshes.par_iter().zip(parts);
+    refined
+        .map(|(mesh, (found, edges, needs, outcomes))| {
+            let mut refined = Refined {
+                mesh: (*mesh).clone(),
+                gap: found.gap,
+                complete: looser == 1.0,
+                minimum_triangles: found.minimum_triangles,
+            };
+            if !found.above.is_empty() {
+                assemble(mesh, &found.above, &needs, outcomes, edges, &mut refined);
+            }
+            refined
+        })
+        .collect()
 }
 
-fn outcome(
+/// What is decided before any triangle is looked into.
+struct Outline {
+    /// What is aimed at: so many times what is allowed.
+    looser: f64,
+    allowance: Allowance,
+    /// Of each mesh.
+    edges: Vec<Edges>,
+    /// Of each of the triangles of each mesh that were looked at.
+    needs: Vec<Vec<Need>>,
+    /// How many triangles more there may be inside.
+    more: u64,
+}
+
+impl Outline {
+    /// With the allowance, or one so much larger that edges and what is foreseen inside are within the limit.
+    fn within(
+        meshes: &[&Mesh],
+        found: &[Survey],
+        observer: DVec3,
+        allowance: &Allowance,
+        most_more: u64,
+    ) -> Self {
+        let (mut looser, mut step) = (1.0, LOOSER);
+        loop {
+            let aimed = match looser {
+                1.0 => *allowance,
+                _ if looser > LOOSEST => Allowance::Everywhere(f64::INFINITY),
+                _ => allowance.times(looser),
+            };
+            let more = Count::up_to(most_more);
+            let edges: Option<Vec<Edges>> = meshes
+                .par_iter()
+                .zip(found)
+                .map(|(mesh, found)| divided_edges(mesh, &found.above, observer, &aimed, &more))
+                .collect();
+            if let Some(edges) = edges {
+                let needs = meshes.par_iter().zip(found).zip(&edges);
+                let needs: Vec<Vec<Need>> = needs
+                    .map(|((mesh, found), edges)| {
+                        let corners = found
+                            .above
+                            .par_iter()
+                            .map(|&index| mesh.triangles()[index as usize]);
+                        let need =
+                            |corners| Need::of(corners, mesh.positions(), observer, edges, &aimed);
+                        corners.map(need).collect()
+                    })
+                    .collect();
+                let inside = needs.iter().flatten().map(|need| need.inside);
+                if inside.sum::<f64>() <= more.left() as f64 || looser > LOOSEST {
+                    return Self {
+                        looser,
+                        allowance: aimed,
+                        edges,
+                        needs,
+                        more: more.left(),
+                    };
+                }
+            }
+            looser *= step;
+            step *= 2.0;
+        }
+    }
+
+    /// The triangles of all meshes that have to be divided, in their order.
+    fn divided(&self, found: &[Survey]) -> Vec<Divided> {
+        let meshes = self.needs.iter().zip(found).enumerate();
+        meshes
+            .flat_map(|(mesh, (needs, found))| {
+                let looked_at = needs.iter().zip(&found.above);
+                let divided = looked_at.filter(|(need, _)| need.is_divided);
+                divided.map(move |(&need, &index)| Divided { mesh, index, need })
+            })
+            .collect()
+    }
+}
+
+/// A triangle that has to be divided.
+#[derive(Clone, Copy)]
+struct Divided {
+    mesh: usize,
+    index: u32,
+    need: Need,
+}
+
+/// What a triangle needs.
+#[derive(Clone, Copy)]
+struct Need {
+    /// Whether it has to be divided at all.
+    is_divided: bool,
+    /// Its gap as it is.
+    gap: f64,
+    /// The fewest triangles by theory.
+    minimum: f64,
+    /// About how many triangles more there will be of points inside.
+    inside: f64,
+}
+
+impl Need {
+    fn of(
+        corners: [u32; 3],
+        positions: &[DVec3],
+        observer: DVec3,
+        edges: &Edges,
+        allowance: &Allowance,
+    ) -> Self {
+        let offsets = corners.map(|corner| positions[corner as usize] - observer);
+        let [a, b, c] = offsets;
+        let gap = triangle_gap(a, b, c);
+        let fits = gap <= allowance.between(&offsets);
+        let is_cut = |side: [u32; 2]| edges.divisions.contains_key(&canonical(side, positions));
+        let is_divided = !fits || sides(corners).into_iter().any(is_cut);
+        let minimum = match is_divided {
+            true => minimum_triangles(offsets, allowance),
+            false => 0.0,
+        };
+        let inside = match fits {
+            true => 0.0,
+            false => pieces_inside(offsets, minimum, allowance),
+        };
+        Self {
+            is_divided,
+            gap,
+            minimum,
+            inside,
+        }
+    }
+
+    /// Of points inside that are spent on it, even without any limit.
+    fn most_points(&self, boundary: usize) -> usize {
+        let most = MOST_POINTS * (self.minimum + boundary as f64) + 64.0;
+        most.min(MAX_POINTS) as usize
+    }
+}
+
+/// What a triangle is divided into.
+struct Outcome {
+    /// The vertices of the boundary, counter-clockwise from the first corner on.
+    boundary: Vec<u32>,
+    pieces: Pieces,
+}
+
+/// The boundary of a triangle, counter-clockwise from the first corner on: vertices, and what they are.
+fn boundary(
     corners: [u32; 3],
     positions: &[DVec3],
     observer: DVec3,
     edges: &Edges,
-    allowance: &Allowance,
-) -> Outcome {
-    let [a, b, c] = corners.map(|corner| positions[corner as usize] - observer);
-    let sides = sides(corners);
-    let divided = |side: &[u32; 2]| edges.divisions.contains_key(&canonical(*side, positions));
-    let gap = triangle_gap(a, b, c);
-    let allowed = allowance.between(&[a, b, c]);
-    if gap <= allowed && !sides.iter().any(divided) {
-        let complete = gap <= allowed;
-        return Outcome::Kept { gap, complete };
-    }
-
+) -> (Vec<u32>, Vec<Corner>) {
     let corner_positions = corners.map(|corner| positions[corner as usize]);
     let mut boundary = vec![];
     let mut points = vec![];
-    for (number, side) in sides.into_iter().enumerate() {
+    for (number, side) in sides(corners).into_iter().enumerate() {
         let (from, to) = (number, (number + 1) % 3);
         let at = |weights: DVec3, position: DVec3, sides: u8| Corner {
             weights,
@@ -260,11 +311,54 @@ fn outcome(
             points.push(at(weights, point_between(p, q, parameter), 1 << number));
         }
     }
-    let minimum = minimum_triangles([a, b, c], allowance);
-    let most_points = MOST_POINTS * (minimum + points.len() as f64) + 64.0;
-    let most_points = most_points.min(MAX_POINTS) as usize;
-    let pieces = divide(corner_positions, observer, &points, allowance, most_points);
-    Outcome::Divided { boundary, pieces }
+    (boundary, points)
+}
+
+/// Puts a mesh together from what became of those of its triangles that were looked at, and all others, in their order.
+fn assemble(
+    mesh: &Mesh,
+    looked_at: &[u32],
+    needs: &[Need],
+    outcomes: Vec<Outcome>,
+    edges: Edges,
+    refined: &mut Refined,
+) {
+    let positions = mesh.positions();
+    let all = mesh.triangles();
+    let mut outcomes = outcomes.into_iter();
+    let mut origins = edges.origins;
+    let mut triangles = Vec::with_capacity(all.len());
+    let mut done = 0;
+    for (need, &index) in needs.iter().zip(looked_at) {
+        let index = index as usize;
+        triangles.extend_from_slice(&all[done..index]);
+        done = index + 1;
+        let corners = all[index];
+        let outcome = if need.is_divided {
+            outcomes.next()
+        } else {
+            None
+        };
+        let Some(Outcome { boundary, pieces }) = outcome else {
+            refined.gap = refined.gap.max(need.gap);
+            triangles.push(corners);
+            continue;
+        };
+        refined.gap = refined.gap.max(pieces.gap);
+        refined.complete &= pieces.complete;
+        let first = (positions.len() + origins.len()) as u32;
+        let index = |local: u32| match boundary.get(local as usize) {
+            Some(&vertex) => vertex,
+            None => first + local - boundary.len() as u32,
+        };
+        triangles.extend(pieces.triangles.iter().map(|triangle| triangle.map(index)));
+        let inside = pieces.inside.iter();
+        origins.extend(inside.map(|&weights| Origin { corners, weights }));
+    }
+    triangles.extend_from_slice(&all[done..]);
+    if !origins.is_empty() {
+        refined.mesh = interpolated(mesh, &origins, triangles);
+    }
 }
 
 /// The mesh with new vertices behind the old ones, and other triangles.
@@ -358,7 +452,8 @@ mod tests {
             .and_then(|mesh| mesh.with_colors(positions.iter().map(color).collect()))
             .unwrap();
         let allowance = Allowance::Everywhere(1e-4);
-        let refined = refine(&mesh, DVec3::ZERO, &allowance, &allowance);
+        let mut refined = refine(&[&mesh], DVec3::ZERO, &allowance, &allowance, u64::MAX);
+        let refined = refined.pop().unwrap();
         assert!(refined.complete && refined.gap <= 1e-4);
         let made = refined.mesh;
         assert!(made.positions().len() > 500);

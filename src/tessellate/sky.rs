@@ -31,11 +31,14 @@ const AIM: f64 = 0.96;
 /// A point this near to an edge of the boundary, against the edge's length, would make a flat triangle.
 const TOO_NEAR: f64 = 0.225;
 
-/// How many charts are tried, each flatter by this factor, before the plain strip is taken. Where the observer is in
+/// How many charts are tried, each flatter than the one before, before the plain strip is taken. Where the observer is in
 /// the triangle's plane, the first is all but a line, in which faces next to the boundary may turn over; each flatter
 /// one needs more points.
 const CHARTS: i32 = 8;
-const FLATTER: f64 = 4.0;
+
+/// Where the points that are granted are too few, so many times as much is allowed; then 4 times that factor, and so on.
+const LOOSER: f64 = 4.0;
+const LOOSEST: f64 = 1e100;
 
 /// A point on the boundary of the triangle, or inside.
 #[derive(Clone, Copy, Debug)]
@@ -59,50 +62,104 @@ pub(super) struct Pieces {
     pub(super) gap: f64,
     /// Whether every gap is within what is allowed.
     pub(super) complete: bool,
+    /// Whether more points would have been added if more had been granted.
+    pub(super) is_short: bool,
+}
+
+/// How many points a triangle may have inside.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grant {
+    pub(super) granted: usize,
+    /// Whether there will never be more.
+    pub(super) is_last: bool,
 }
 
 /// Divides the triangle between three positions, whose boundary is `boundary` (counter-clockwise, from corner 0
-/// on), until every gap is within the allowance or `most_points` have been added.
+/// on), until every gap is within the allowance or so many points have been added as make sense for it, `most_points`
+/// and what a flatter chart takes; never more than `granted`. Where those are too few and `is_last` says that there will
+/// be no more, gaps are larger by one factor.
 pub(super) fn divide(
     positions: [DVec3; 3],
     observer: DVec3,
     boundary: &[Corner],
     allowance: &Allowance,
     most_points: usize,
+    Grant { granted, is_last }: Grant,
 ) -> Pieces {
     let Some(plane) = Plane::new(positions.map(|position| position - observer)) else {
         return strip(boundary, allowance);
     };
+    let (mut looser, mut step) = (1.0, LOOSER);
+    let mut best: Option<Pieces> = None;
+    loop {
+        let aimed = match looser {
+            1.0 => *allowance,
+            _ => allowance.times(looser),
+        };
+        let limits = [most_points, granted];
+        let made = divide_on_sky(plane, positions, observer, boundary, &aimed, limits);
+        let Some(pieces) = made else { break };
+        let (is_complete, is_short) = (pieces.complete, pieces.is_short);
+        if looser == 1.0 && (is_complete || !is_short) {
+            return Pieces {
+                is_short: false,
+                ..pieces
+            };
+        }
+        if best.as_ref().is_none_or(|best| pieces.gap < best.gap) {
+            best = Some(Pieces {
+                complete: false,
+                is_short: true,
+                ..pieces
+            });
+        }
+        if is_complete || !is_short || !is_last || looser > LOOSEST {
+            break;
+        }
+        looser *= step;
+        step *= LOOSER;
+    }
+    best.unwrap_or_else(|| strip(boundary, allowance))
+}
+
+/// The same with one allowance; `None` where every chart has faces that are turned over. The limits are the points that
+/// make sense, and those granted.
+fn divide_on_sky(
+    plane: Plane,
+    positions: [DVec3; 3],
+    observer: DVec3,
+    boundary: &[Corner],
+    allowance: &Allowance,
+    [most_points, granted]: [usize; 2],
+) -> Option<Pieces> {
     let smallest = boundary
         .iter()
         .fold(f64::INFINITY, |s, c| s.min(allowance.between(&[c.offset])));
-    // Where the observer is in the plane every direction lies on the horizon. Any chart gives a valid mesh.
-    let height = plane
-        .height
-        .max((2.0 * smallest * plane.nearest).sqrt())
-        .max(smallest);
     let mut best: Option<Pieces> = None;
     for flattening in 0..CHARTS {
-        let chart = Chart {
-            plane,
-            height: height * FLATTER.powi(flattening),
-        };
+        let chart = Chart::new(plane, allowance, smallest, flattening);
         let mut front = match Front::new(chart, positions, observer, boundary, allowance) {
             Some(front) => front,
             None => continue,
         };
-        front.advance(most_points + chart.points(smallest));
-        let Some(pieces) = front.finish() else {
+        let most = most_points + chart.points(allowance);
+        let is_short = front.advance(most.min(granted)) && granted < most;
+        let Some(mut pieces) = front.finish() else {
             continue;
         };
+        pieces.is_short = is_short;
         if pieces.complete {
-            return pieces;
+            return Some(pieces);
         }
         if best.as_ref().is_none_or(|best| pieces.gap < best.gap) {
             best = Some(pieces);
         }
+        if is_short {
+            // A flatter chart takes more points.
+            break;
+        }
     }
-    best.unwrap_or_else(|| strip(boundary, allowance))
+    best
 }
 
 /// A point to be added.
@@ -184,8 +241,8 @@ impl<'a> Front<'a> {
         Some(front)
     }
 
-    /// Adds points until nothing is left to do, or `most_points` have been added.
-    fn advance(&mut self, most_points: usize) {
+    /// Adds points until nothing is left to do, or `most_points` have been added; whether something may be left to do.
+    fn advance(&mut self, most_points: usize) -> bool {
         let mut added = 0;
         let mut around = vec![];
         while added < most_points
@@ -218,6 +275,7 @@ impl<'a> Front<'a> {
                 self.consider(face, vertices);
             }
         }
+        added == most_points
     }
 
     /// Sets a task if the face has too large a gap.

@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 
 use super::{Limits, Plan, Surface, bounds, seen_parts};
-use crate::mesh::Part;
+use crate::mesh::{Mesh, Part};
 use crate::photosurface::Wanted;
 use crate::photosurface::seen::Seen;
-use crate::tessellate::{Counts, refine, survey};
+use crate::tessellate::{Counts, shares, survey};
 
 impl<'a> Plan<'a> {
     /// Carries out the plans of one object for all steps with one mesh at rest, which is refined for one step after
@@ -14,9 +14,13 @@ impl<'a> Plan<'a> {
     ///
     /// What is within the tolerance at one step stays so when it is refined for another: the gap of a triangle is
     /// how far a chord plane is above the convex `r`, and that of a piece of it is below that of the whole.
+    ///
+    /// Of what is `granted` beyond the triangles of the source, each step has a share of what those before it have left,
+    /// in proportion to what is granted for it and those behind it where each has a mesh of its own.
     pub(in crate::photosurface) fn carry_out_together(
         mut plans: Vec<Self>,
         wanted: Wanted,
+        granted: u64,
     ) -> Vec<Vec<Surface<'a>>> {
         let shapes = plans
             .iter()
@@ -32,13 +36,24 @@ impl<'a> Plan<'a> {
         let before: Vec<(String, Part)> = first.draft().parts.into_owned();
         let mut parts: Vec<(String, Part)> = before.clone();
         let limits = Self::travelling(&mut plans, &parts);
-        for (plan, (_, limits)) in plans.iter().zip(&limits) {
+        let triangles = |parts: &[(String, Part)]| {
+            let triangles = parts.iter().map(|(_, part)| part.mesh().triangles().len());
+            triangles.sum::<usize>() as u64
+        };
+        for (step, (plan, (_, limits))) in plans.iter().zip(&limits).enumerate() {
             if !wanted.subdivide || plan.view.relative_velocity().rapidity() == 0.0 {
                 continue;
             }
-            for (_, part) in &mut parts {
-                let observer = plan.view.observer_rest();
-                let refined = refine(part.mesh(), observer, &limits.allowance, &limits.whole);
+            let source = plan.placed.source_triangles;
+            let used = triangles(&parts).saturating_sub(source);
+            let weights: Vec<f64> = plans[step..]
+                .iter()
+                .map(|plan| plan.granted as f64 + 1.0)
+                .collect();
+            let share = shares(granted.saturating_sub(used), &weights)[0];
+            let meshes: Vec<&Mesh> = parts.iter().map(|(_, part)| part.mesh()).collect();
+            let refined = plan.refine(&meshes, limits, used.saturating_add(share));
+            for ((_, part), refined) in parts.iter_mut().zip(refined) {
                 *part = part.with_mesh(refined.mesh);
             }
         }

@@ -1,0 +1,145 @@
+//! How many points each of many triangles may have inside, where all together have a limit.
+
+/// So many turns are taken at most.
+const TURNS: u32 = 2;
+
+/// What a triangle may take beyond what was foreseen, which is good on the whole but not for each.
+const BEYOND: f64 = 4.0;
+
+/// More than this is not foreseen of any triangle.
+const MOST_FORESEEN: f64 = 1e15;
+
+/// A number of points shared by triangles: first by what was foreseen of each; what some leave goes to those that were
+/// short of points, which are then divided anew.
+///
+/// Shares depend on what was used before and nothing else.
+pub(super) struct Room {
+    weights: Vec<f64>,
+    /// What those have that have another turn.
+    left: u64,
+    turns: u32,
+    /// Triangles that are to be divided next.
+    short: Vec<usize>,
+}
+
+impl Room {
+    /// For triangles of which so much is foreseen.
+    pub(super) fn new(foreseen: Vec<f64>, points: u64) -> Self {
+        let weight = |foreseen: f64| {
+            // NaN is as good as too many.
+            if foreseen < MOST_FORESEEN {
+                foreseen + BEYOND
+            } else {
+                MOST_FORESEEN
+            }
+        };
+        Self {
+            short: (0..foreseen.len()).collect(),
+            weights: foreseen.into_iter().map(weight).collect(),
+            left: points,
+            turns: 0,
+        }
+    }
+
+    /// Which triangles are to be divided next, in their order, and how many points each may have; none in the end.
+    pub(super) fn turn(&mut self) -> Vec<(usize, usize)> {
+        if self.turns == TURNS {
+            return vec![];
+        }
+        self.turns += 1;
+        let short = std::mem::take(&mut self.short);
+        let weights: Vec<f64> = short.iter().map(|&number| self.weights[number]).collect();
+        let shares = shares(self.left, &weights).into_iter();
+        let most = shares.map(|share| usize::try_from(share).unwrap_or(usize::MAX));
+        short.into_iter().zip(most).collect()
+    }
+
+    /// Whether the turn that is being taken is the last one.
+    pub(super) fn is_last_turn(&self) -> bool {
+        self.turns == TURNS
+    }
+
+    /// Tells how many points a triangle has used, and whether it was short of more.
+    pub(super) fn used(&mut self, number: usize, points: usize, is_short: bool) {
+        if is_short {
+            self.short.push(number);
+        } else {
+            self.left -= points as u64;
+        }
+    }
+}
+
+/// Shares of a whole in proportion to weights, which are not negative; all together never more than that, and less by at
+/// most one for each share where any weight is above zero and the whole is below 2^53.
+pub(crate) fn shares(whole: u64, weights: &[f64]) -> Vec<u64> {
+    let mut weight: f64 = weights.iter().sum();
+    let mut left = whole;
+    let share = |&own: &f64| {
+        let share = if own < weight {
+            ((left as f64 * (own / weight)) as u64).min(left)
+        } else if own > 0.0 {
+            left
+        } else {
+            0
+        };
+        weight -= own;
+        left -= share;
+        share
+    };
+    weights.iter().map(share).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Triangles that need so many points, and what they get.
+    fn shared(foreseen: &[f64], needed: &[usize], points: u64) -> Vec<usize> {
+        let mut room = Room::new(foreseen.to_vec(), points);
+        let mut got = vec![0; needed.len()];
+        loop {
+            let turn = room.turn();
+            if turn.is_empty() {
+                return got;
+            }
+            for (number, most) in turn {
+                got[number] = needed[number].min(most);
+                room.used(number, got[number], most < needed[number]);
+            }
+        }
+    }
+
+    #[test]
+    fn shares_are_in_proportion_and_never_more_than_the_whole() {
+        assert_eq!(shares(10, &[1.0, 1.0, 3.0]), [2, 2, 6]);
+        assert_eq!(shares(7, &[0.0, 2.0, 0.0]), [0, 7, 0]);
+        assert_eq!(shares(7, &[0.0, 0.0]), [0, 0]);
+        let weights: Vec<f64> = (0..1000)
+            .map(|i| (f64::from(i) * 0.7).sin().powi(8) * 1e9)
+            .collect();
+        for whole in [0, 1, 999, 1_000_003, 1 << 52] {
+            let all: u128 = shares(whole, &weights).into_iter().map(u128::from).sum();
+            assert!(
+                all <= u128::from(whole) && all + 1000 >= u128::from(whole),
+                "{whole}: {all}"
+            );
+        }
+    }
+
+    #[test]
+    fn all_together_never_have_more_and_what_some_leave_goes_to_others() {
+        let foreseen = [10.0, 0.0, f64::NAN, 3.0, f64::INFINITY, 1e300, 0.5];
+        let needed = [10, 500, 3, 3, 20, 0, 1];
+        for points in [0, 1, 7, 50, 300, 537, 1000, 100_000, u64::MAX / 2] {
+            let got = shared(&foreseen, &needed, points);
+            assert!(
+                got.iter().sum::<usize>() as u64 <= points,
+                "{points}: {got:?}"
+            );
+        }
+        assert_eq!(shared(&foreseen, &needed, 100_000), needed);
+        // One of which nothing was foreseen gets nearly all that there is.
+        let got = shared(&[100.0, 100.0, 0.0], &[1, 1, 10_000], 9_000);
+        assert!(got[2] > 8_900, "{got:?}");
+    }
+}
