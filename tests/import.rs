@@ -478,14 +478,15 @@ fn obj_groups_and_materials_become_parts() {
     );
 
     let (model, notes) = read("missing_mtl.obj");
-    assert_eq!(model.parts[0].material, None);
+    let gold = model.parts[0].material.as_ref().expect("a material");
+    assert_eq!(gold.properties(), &json!({ "name": "gold" }));
     assert!(
         notes[0].contains("nowhere.mtl\" skipped: cannot read "),
         "{notes:?}"
     );
     assert_eq!(
         notes[1],
-        "material \"gold\" is not defined: parts are left without"
+        "material \"gold\" is not defined: parts have no more than its name"
     );
 }
 

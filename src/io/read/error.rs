@@ -148,9 +148,6 @@ pub enum ReadError {
         /// What is wrong with it.
         problem: ObjProblem,
     },
-    /// An OBJ file that is wrong in another way.
-    #[error("not as OBJ has it")]
-    Obj(#[source] tobj::LoadError),
     /// A vertex so far away that computing with it would overflow.
     #[error(
         "{coordinate:e} is a coordinate of vertex {vertex} of part {part:?}, expected at most {limit:e}"
@@ -434,7 +431,7 @@ pub enum ObjProblem {
         /// What stands there.
         found: String,
     },
-    /// Too few or too many numbers.
+    /// Too few numbers.
     #[error("{statement} has {found} numbers, expected {expected}")]
     Count {
         /// The first word.
@@ -450,19 +447,14 @@ pub enum ObjProblem {
         /// What stands there.
         found: String,
     },
-    /// A corner of something that is not there.
-    #[error("corner {found:?} asks for {what} {index}, but there are {count} so far")]
+    /// A corner at a vertex that is not there.
+    #[error("corner {found:?} asks for v {index}, but there are {count} so far")]
     Index {
         /// What stands there.
         found: String,
-        /// v, vt or vn.
-        what: &'static str,
         /// The offending number.
         index: i64,
-        /// How many lines of that kind came before.
+        /// How many vertices there are: before the corner, if it counts from there, else in the file.
         count: usize,
     },
-    /// A point at infinity.
-    #[error("the fourth coordinate is 0, expected another number")]
-    AtInfinity,
 }

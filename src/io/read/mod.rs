@@ -11,6 +11,7 @@ mod document;
 mod error;
 mod extensions;
 mod extras;
+mod find;
 mod gltf_model;
 mod instances;
 mod materials;
@@ -28,6 +29,7 @@ mod polygon;
 mod primitive;
 mod quota;
 mod run;
+mod text;
 mod uri;
 
 use std::path::{Path, PathBuf};

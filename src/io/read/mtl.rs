@@ -4,7 +4,7 @@
 //! extension for physically based rendering that Clara.io published and Blender writes. What these say of
 //! Phong's model beyond colour and exponent (`Ka`, `Ks`, `Ni`, `illum`) has no meaning in glTF's.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -13,6 +13,7 @@ use super::ReadError;
 use super::materials::reason;
 use super::mtl_map::{Map, Pictures};
 use super::note::{Note, add_note};
+use super::text::{as_bytes_of_ascii, lines, shown, split_statement};
 use crate::mesh::{Material, position};
 
 /// Statements that say something which glTF has no place for.
@@ -21,22 +22,25 @@ const LEFT: [&str; 20] = [
     "map_ORM", "map_Pm", "map_Pr", "map_Ps", "map_RMA", "map_Tr", "map_d", "map_disp", "refl",
 ];
 /// Names of maps of bumps.
-const BUMPS: [&str; 3] = ["map_Bump", "map_bump", "bump"];
+const BUMPS: [&str; 2] = ["map_Bump", "bump"];
 /// Roughness of what says nothing about it: hardly any gloss.
 const MATT: f64 = 0.9;
 
 /// What a library says of one material: the last of each statement.
 struct Entry {
-    name: String,
+    /// In the bytes of the file.
+    name: Vec<u8>,
+    /// By their names in lower case.
     statements: BTreeMap<String, String>,
 }
 
-/// The materials of a library, with their textures; none where it cannot be read.
+/// The materials of a library with their textures and their names in the bytes of the file; none where it cannot
+/// be read.
 pub(super) fn read_library(
     path: &Path,
     pictures: &mut Pictures,
     notes: &mut Vec<Note>,
-) -> Result<Vec<Material>, ReadError> {
+) -> Result<Vec<(Vec<u8>, Material)>, ReadError> {
     let bytes = match pictures.files.read(path, u64::MAX) {
         Ok(bytes) => bytes,
         Err(error) => {
@@ -46,7 +50,7 @@ pub(super) fn read_library(
             return Ok(vec![]);
         }
     };
-    let (entries, malformed) = entries(&String::from_utf8_lossy(&bytes));
+    let (entries, malformed) = entries(&bytes);
     if !malformed.is_empty() {
         let note = Note::MaterialLines {
             path: path.to_owned(),
@@ -55,36 +59,53 @@ pub(super) fn read_library(
         add_note(notes, note);
     }
     let folder = path.parent().unwrap_or(Path::new(""));
-    let make = |entry: &Entry| entry.material(folder, pictures, notes);
-    entries.iter().map(make).collect()
+    let mut materials = vec![];
+    for entry in entries {
+        // No material has the same notes as another.
+        let mut of_material = vec![];
+        let material = entry.material(folder, pictures, &mut of_material)?;
+        materials.push((entry.name, material));
+        notes.append(&mut of_material);
+    }
+    Ok(materials)
 }
 
-/// The materials of a library, and the numbers of the lines that make no sense.
-fn entries(text: &str) -> (Vec<Entry>, Vec<usize>) {
+/// The materials of a library, the last of each name, and the numbers of the lines that make no sense.
+fn entries(file: &[u8]) -> (Vec<Entry>, Vec<usize>) {
     let mut entries: Vec<Entry> = vec![];
+    let mut numbers: HashMap<Vec<u8>, usize> = HashMap::new();
+    let mut current = None;
     let mut malformed = vec![];
-    for (index, line) in text.lines().enumerate() {
-        let line = line.trim();
-        let (statement, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-        let rest = rest.trim();
-        let makes_sense = match statement {
+    for (index, line) in lines(&as_bytes_of_ascii(file)).enumerate() {
+        let (statement, name) = split_statement(line);
+        let statement = shown(statement).to_ascii_lowercase();
+        let rest = shown(name);
+        let makes_sense = match statement.as_str() {
             "" => true,
             _ if statement.starts_with('#') => true,
-            "Kd" | "Ke" => color(rest).is_some(),
-            "Ns" | "d" | "Tr" | "Pr" | "Pm" => number(rest).is_some(),
+            "kd" | "ke" => color(&rest).is_some(),
+            "ns" | "d" | "tr" | "pr" | "pm" => number(&rest).is_some(),
             _ if statement.starts_with("map_") => !rest.is_empty(),
             "newmtl" | "bump" | "norm" => !rest.is_empty(),
             _ => true,
         };
-        match (statement, entries.last_mut()) {
+        match (statement.as_str(), current) {
             _ if !makes_sense => malformed.push(index + 1),
-            ("newmtl", _) => entries.push(Entry {
-                name: rest.to_owned(),
-                statements: BTreeMap::new(),
-            }),
-            (_, Some(entry)) => {
-                let statements = &mut entry.statements;
-                statements.insert(statement.to_owned(), rest.to_owned());
+            ("newmtl", _) => {
+                let number = *numbers.entry(name.to_vec()).or_insert(entries.len());
+                let entry = Entry {
+                    name: name.to_vec(),
+                    statements: BTreeMap::new(),
+                };
+                match entries.get_mut(number) {
+                    Some(known) => *known = entry,
+                    None => entries.push(entry),
+                }
+                current = Some(number);
+            }
+            (_, Some(number)) => {
+                let statements = &mut entries[number].statements;
+                statements.insert(statement, rest.into_owned());
             }
             (_, None) => {}
         }
@@ -99,6 +120,7 @@ impl Entry {
         pictures: &mut Pictures,
         notes: &mut Vec<Note>,
     ) -> Result<Material, ReadError> {
+        let name = shown(&self.name);
         let mut left = self.left();
         let mut textures = vec![];
         let mut slot = |statement: &str, map: &Map, is_bump: bool, notes: &mut Vec<Note>| {
@@ -134,7 +156,7 @@ impl Entry {
         }
         // OBJ says nothing about sides, and viewers of it draw both.
         let mut properties = json!({
-            "name": self.name,
+            "name": name,
             "pbrMetallicRoughness": surface,
             "doubleSided": true,
         });
@@ -152,7 +174,7 @@ impl Entry {
                 info["scale"] = map.strength.into();
             }
             properties["normalTexture"] = info;
-            let material = self.name.clone();
+            let material = name.clone().into_owned();
             add_note(notes, Note::BumpAsNormals { material });
         }
         let glow = self.map("map_Ke");
@@ -161,13 +183,13 @@ impl Entry {
 
         if !left.is_empty() {
             let note = Note::Material {
-                material: self.name.clone(),
+                material: name.clone().into_owned(),
                 properties: left,
             };
             add_note(notes, note);
         }
         Material::new(properties, textures).map_err(|problem| ReadError::Material {
-            place: format!("material {:?}", self.name),
+            place: format!("material {name:?}"),
             problem,
         })
     }
@@ -199,14 +221,14 @@ impl Entry {
             let mut numbers = rest.split_whitespace().map(str::parse::<f64>);
             numbers.all(|number| number == Ok(nothing))
         };
-        let bumps = match self.statements.contains_key("norm") {
+        let bumps = match self.has("norm") {
             true => &BUMPS[..],
             false => &[],
         };
         LEFT.iter()
             .chain(bumps)
             .filter(|statement| {
-                let rest = self.statements.get(**statement);
+                let rest = self.rest(statement);
                 rest.is_some_and(|rest| !says_nothing(statement, rest))
             })
             .filter(|statement| {
@@ -230,15 +252,24 @@ impl Entry {
     }
 
     fn map(&self, statement: &str) -> Option<Map> {
-        Some(Map::new(self.statements.get(statement)?))
+        Some(Map::new(self.rest(statement)?))
+    }
+
+    fn has(&self, statement: &str) -> bool {
+        self.rest(statement).is_some()
+    }
+
+    /// What stands behind a statement.
+    fn rest(&self, statement: &str) -> Option<&String> {
+        self.statements.get(&statement.to_ascii_lowercase())
     }
 
     fn number(&self, statement: &str) -> Option<f64> {
-        number(self.statements.get(statement)?)
+        number(self.rest(statement)?)
     }
 
     fn color(&self, statement: &str) -> Option<[f64; 3]> {
-        color(self.statements.get(statement)?)
+        color(self.rest(statement)?)
     }
 }
 
@@ -293,7 +324,7 @@ mod tests {
     fn read(library: &str) -> (Material, Vec<String>) {
         let files = Folder::new("nowhere".as_ref());
         let mut notes = vec![];
-        let (entries, _) = entries(library);
+        let (entries, _) = entries(library.as_bytes());
         let mut pictures = Pictures::new(&files);
         let material = entries[0].material("nowhere".as_ref(), &mut pictures, &mut notes);
         let notes = notes.iter().map(ToString::to_string).collect();
@@ -304,7 +335,7 @@ mod tests {
     fn malformed_lines_are_left_out_and_named() {
         let text =
             "newmtl a\nKd 1 0.5\n Kd 1 0.5 0\nKa 1\nd x\nNs 10\nnewmtl\nd -halo 0.5\nKe 2 # two\n";
-        let (entries, malformed) = entries(text);
+        let (entries, malformed) = entries(text.as_bytes());
         assert_eq!(malformed, [2, 5, 7, 9]);
         assert_eq!(entries.len(), 1);
         assert_eq!(entries[0].color("Kd"), Some([1.0, 0.5, 0.0]));

@@ -6,9 +6,11 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
+use super::find::{find, slashed};
 use super::materials::reason;
 use super::note::{Note, add_note};
 use super::picture;
+use super::text::unquoted;
 use super::uri::Folder;
 use crate::mesh::{Image, Texture};
 
@@ -51,7 +53,7 @@ impl Map {
             rest = words.split_whitespace().next_back().unwrap_or_default();
         }
         // Written on Windows, read everywhere.
-        map.file = rest.replace('\\', "/");
+        map.file = slashed(unquoted(rest));
         map
     }
 
@@ -119,7 +121,7 @@ impl<'a> Pictures<'a> {
         folder: &Path,
         notes: &mut Vec<Note>,
     ) -> Option<Arc<Texture>> {
-        let path = folder.join(&map.file);
+        let path = find(folder, &map.file, notes);
         if !self.images.contains_key(&path) {
             let image = format!("{:?}", map.file);
             let read = match self.read(&path, &map.file) {

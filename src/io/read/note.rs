@@ -203,6 +203,29 @@ pub enum Note {
         /// Why.
         reason: String,
     },
+    /// Something in an OBJ file that does not bear on the shape and makes no sense.
+    PassedOver {
+        /// What it is.
+        what: &'static str,
+        /// How often it is there.
+        count: usize,
+        /// The line that has it first, from 1, where that is known.
+        first_line: Option<usize>,
+    },
+    /// A file that is not where it is said to be, and one that may be it.
+    FoundElsewhere {
+        /// What is said.
+        named: String,
+        /// The file that is read.
+        path: PathBuf,
+    },
+    /// Names that are too long to be told apart by more of them.
+    NamesCut {
+        /// How many.
+        count: usize,
+        /// Bytes that are left of each at most.
+        limit: usize,
+    },
     /// A material that no library defines.
     UnknownMaterial {
         /// Its name.
@@ -364,10 +387,30 @@ impl fmt::Display for Note {
             Self::MaterialLibrary { path, reason } => {
                 write!(f, "material library {path:?} skipped: {reason}")
             }
+            Self::PassedOver {
+                what,
+                count,
+                first_line,
+            } => {
+                let (times, word) = match count {
+                    1 => ("once".to_owned(), "in"),
+                    _ => (format!("{count} times"), "first in"),
+                };
+                write!(f, "{what}: passed over {times}")?;
+                let line = first_line.map(|line| format!(", {word} line {line}"));
+                f.write_str(&line.unwrap_or_default())
+            }
+            Self::FoundElsewhere { named, path } => {
+                write!(f, "file {named:?} is not there: {path:?} is read instead")
+            }
+            Self::NamesCut { count, limit } => {
+                let those = plural(*count, "name");
+                write!(f, "{those} of parts cut to {limit} bytes")
+            }
             Self::UnknownMaterial { name } => {
                 write!(
                     f,
-                    "material {name:?} is not defined: parts are left without"
+                    "material {name:?} is not defined: parts have no more than its name"
                 )
             }
             Self::MaterialLines { path, lines } => {

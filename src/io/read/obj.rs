@@ -1,24 +1,29 @@
 //! An OBJ file as a model: every group with a material becomes a part.
 
-use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
-use std::path::Path;
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use glam::{DVec3, Vec2, Vec4};
-use tobj::LoadOptions;
+use glam::{DVec2, DVec3, Vec2, Vec4};
+use serde_json::json;
 
+use super::find::{find, slashed};
 use super::materials::Fitted;
 use super::mtl::read_library;
 use super::mtl_map::Pictures;
 use super::names::tell_apart;
 use super::normals::replace_zero_normals;
-use super::note::{Note, add_note, plural};
-use super::obj_lines::{Prepared, prepare};
+use super::note::Note;
+use super::obj_lines::{Faces, Statements, read_statements};
 use super::polygon::triangulate;
+use super::text::{shown, unquoted};
 use super::uri::Folder;
 use super::{Findings, ReadError, checked};
 use crate::mesh::{Material, Mesh, MeshError, Model, Part};
+
+/// Bytes of a name that parts get at most: where a material of every part is behind it, the file has it once and
+/// the model as many times as there are parts.
+const MAX_NAME: usize = 500;
 
 /// Reads the bytes of an OBJ file; libraries and textures are looked for in `folder`, and parts without a
 /// group are called `default_name`.
@@ -27,59 +32,37 @@ pub(super) fn read_obj_bytes(
     folder: Folder,
     default_name: &str,
 ) -> Result<(Model, Findings), ReadError> {
-    let prepared = prepare(&String::from_utf8_lossy(bytes))?;
+    let mut file = read_statements(bytes)?;
     let mut notes = vec![];
-    note_other_content(&prepared, &mut notes);
-    let libraries = RefCell::new(Libraries {
-        materials: vec![],
-        pictures: Pictures::new(&folder),
-        notes,
-        problem: None,
-    });
-    let options = LoadOptions {
-        single_index: true,
-        ignore_points: true,
-        ignore_lines: true,
-        ..LoadOptions::default()
-    };
-    let loaded = tobj::load_obj_buf(&mut prepared.text.as_bytes(), &options, |library| {
-        Ok(libraries.borrow_mut().load(library))
-    });
-    let (models, _) = loaded.map_err(ReadError::Obj)?;
-    let Libraries {
-        materials,
-        mut notes,
-        problem,
-        ..
-    } = libraries.into_inner();
-    problem.map_or(Ok(()), Err)?;
-    note_unknown_materials(&prepared, &materials, &mut notes);
+    file.note(&mut notes);
+    let mut libraries = Libraries::new(&folder, notes);
+    for names in &file.libraries.all {
+        libraries.load(&shown(names))?;
+    }
+    let materials = libraries.used_by(&file)?;
+    let mut notes = libraries.notes;
 
-    let models: Vec<tobj::Model> = models
-        .into_iter()
-        .filter(|m| !m.mesh.indices.is_empty())
-        .collect();
-    let material_of = |model: &tobj::Model| materials.get(model.mesh.material_id?).cloned();
-    let names = part_names(&models, default_name, material_of);
     let mut fitted = Fitted::default();
     let mut parts = vec![];
-    for (model, name) in models.iter().zip(names) {
-        let mesh = make_mesh(&model.mesh, &prepared, &name, &mut notes);
+    let faces = std::mem::take(&mut file.parts);
+    let names = part_names(&faces, default_name, &file, &mut notes);
+    for (faces, name) in faces.into_iter().zip(names) {
+        // No part has the same notes as another.
+        let mut of_part = vec![];
+        let place = format!("part {name:?}");
+        let mesh = make_mesh(&faces, &file, &name, &mut of_part);
         let part = mesh.and_then(|mesh| {
             let sets = mesh.texture_coordinates().len();
-            let place = format!("part {name:?}");
-            let material = material_of(model);
-            let material = material.map(|m| fitted.fit(&m, &place, sets, &mut notes));
-            Part::new(name.clone(), mesh, material)
+            let material = faces.material.map(|index| &materials[index as usize]);
+            let material = material.map(|m| fitted.fit(m, &place, sets, &mut of_part));
+            Part::new(name, mesh, material)
         });
-        parts.push(part.map_err(|problem| ReadError::Mesh {
-            place: format!("part {name:?}"),
-            problem,
-        })?);
+        parts.push(part.map_err(|problem| ReadError::Mesh { place, problem })?);
+        notes.append(&mut of_part);
     }
     if parts.is_empty() {
         let skipped: String = notes.iter().map(|note| format!("; {note}")).collect();
-        let instead = match prepared.empty_faces {
+        let instead = match file.empty_faces {
             0 => format!("no faces{skipped}"),
             _ => format!("none of three corners or more{skipped}"),
         };
@@ -93,164 +76,213 @@ pub(super) fn read_obj_bytes(
     Ok((checked(model)?, Findings { notes, files }))
 }
 
-fn note_other_content(prepared: &Prepared, notes: &mut Vec<Note>) {
-    let count = prepared.points_and_lines;
-    if count > 0 {
-        let place = "the file".to_owned();
-        add_note(notes, Note::PointsAndLines { place, count });
-    }
-    let count = prepared.empty_faces;
-    if count > 0 {
-        add_note(notes, Note::EmptyFaces { count });
-    }
-    if prepared.curves > 0 {
-        let what = plural(prepared.curves, "free-form curve or surface");
-        add_note(notes, Note::NotCarried { what });
-    }
-    if prepared.has_colors {
-        add_note(notes, Note::ColorsFromSrgb);
-    }
-}
-
 /// The material libraries of a file.
 struct Libraries<'a> {
-    materials: Vec<Arc<Material>>,
     pictures: Pictures<'a>,
     notes: Vec<Note>,
-    /// The first that `tobj` has no way to pass on.
-    problem: Option<ReadError>,
+    /// Libraries that have been read: a file may name one many times.
+    known: HashSet<PathBuf>,
+    /// By their names in the bytes of the libraries, and as they are shown; the last of each.
+    by_bytes: HashMap<Vec<u8>, Arc<Material>>,
+    by_text: HashMap<String, Arc<Material>>,
 }
 
-impl Libraries<'_> {
-    /// Reads the libraries that one `mtllib` names: one whose name may have spaces, or several. Also tells
-    /// `tobj` the names of their materials, which is all it needs.
-    fn load(&mut self, names: &Path) -> (Vec<tobj::Material>, HashMap<String, usize>) {
-        let folder = self.pictures.files.path();
-        let names = names.to_string_lossy().replace('\\', "/");
-        let paths = match folder.join(&names).exists() {
-            true => vec![folder.join(&names)],
-            false => names
-                .split_whitespace()
-                .map(|name| folder.join(name))
-                .collect(),
-        };
-        let mut new = vec![];
-        for path in paths {
-            match read_library(&path, &mut self.pictures, &mut self.notes) {
-                Ok(materials) => new.extend(materials),
-                Err(problem) => self.problem = self.problem.take().or(Some(problem)),
-            }
+impl<'a> Libraries<'a> {
+    fn new(folder: &'a Folder<'a>, notes: Vec<Note>) -> Self {
+        Self {
+            pictures: Pictures::new(folder),
+            notes,
+            known: HashSet::new(),
+            by_bytes: HashMap::new(),
+            by_text: HashMap::new(),
         }
-        let named = |material: &Material| tobj::Material {
-            name: material.name().unwrap_or_default().to_owned(),
-            ..tobj::Material::default()
-        };
-        let stand_ins: Vec<tobj::Material> = new.iter().map(named).collect();
-        let names = stand_ins.iter().map(|material| material.name.clone());
-        let by_name = names.enumerate().map(|(i, name)| (name, i)).collect();
-        self.materials.extend(new.into_iter().map(Arc::new));
-        (stand_ins, by_name)
     }
-}
 
-fn note_unknown_materials(prepared: &Prepared, materials: &[Arc<Material>], notes: &mut Vec<Note>) {
-    let known: HashSet<&str> = materials.iter().filter_map(|m| m.name()).collect();
-    for name in &prepared.materials {
-        if !known.contains(name.as_str()) {
-            let name = name.clone();
-            add_note(notes, Note::UnknownMaterial { name });
+    /// Reads the libraries that one `mtllib` names: one whose name may have spaces, or several.
+    fn load(&mut self, names: &str) -> Result<(), ReadError> {
+        let folder = self.pictures.files.path();
+        let whole = unquoted(names);
+        if folder.join(slashed(whole)).exists() {
+            return self.load_one(whole);
         }
+        let words = || names.split_ascii_whitespace().map(unquoted);
+        let are_libraries = words().all(|word| word.to_ascii_lowercase().ends_with(".mtl"));
+        match are_libraries && words().count() > 1 {
+            true => words().try_for_each(|word| self.load_one(word)),
+            false => self.load_one(whole),
+        }
+    }
+
+    fn load_one(&mut self, name: &str) -> Result<(), ReadError> {
+        let path = find(self.pictures.files.path(), name, &mut self.notes);
+        // One file can be named in many ways.
+        let file = path.canonicalize().unwrap_or_else(|_| path.clone());
+        if !self.known.insert(file) {
+            return Ok(());
+        }
+        let materials = read_library(&path, &mut self.pictures, &mut self.notes)?;
+        for (name, material) in materials {
+            let material = Arc::new(material);
+            self.by_text
+                .insert(shown(&name).into_owned(), material.clone());
+            self.by_bytes.insert(name, material);
+        }
+        Ok(())
+    }
+
+    /// The materials that a file uses, in their order; those that no library defines have only a name.
+    fn used_by(&mut self, file: &Statements) -> Result<Vec<Arc<Material>>, ReadError> {
+        let mut materials = vec![];
+        for name in &file.materials.all {
+            if let Some(material) = self.find(name) {
+                materials.push(material);
+                continue;
+            }
+            let name = shown(name).into_owned();
+            let material = Material::new(json!({ "name": name }), vec![]);
+            let material = material.map_err(|problem| ReadError::Material {
+                place: format!("material {name:?}"),
+                problem,
+            })?;
+            self.notes.push(Note::UnknownMaterial { name });
+            materials.push(Arc::new(material));
+        }
+        Ok(materials)
+    }
+
+    fn find(&self, name: &[u8]) -> Option<Arc<Material>> {
+        let text = shown(name);
+        let found = self.by_bytes.get(name);
+        let found = found.or_else(|| self.by_text.get(&*text));
+        // Some names are followed by a comment.
+        let cut = || self.by_text.get(text.split_once(" #")?.0.trim_end());
+        found.or_else(cut).cloned()
     }
 }
 
 /// The names of groups, told apart where `usemtl` splits them.
 fn part_names(
-    models: &[tobj::Model],
+    parts: &[Faces],
     default_name: &str,
-    material_of: impl Fn(&tobj::Model) -> Option<Arc<Material>>,
+    file: &Statements,
+    notes: &mut Vec<Note>,
 ) -> Vec<String> {
-    let name = |model: &tobj::Model| match model.name.as_str() {
-        "" | "unnamed_object" => default_name.to_owned(),
-        name => name.to_owned(),
-    };
-    let mut groups: HashMap<String, Vec<usize>> = HashMap::new();
-    for (i, model) in models.iter().enumerate() {
-        groups.entry(name(model)).or_default().push(i);
+    let mut groups: HashMap<&[u8], Vec<usize>> = HashMap::new();
+    for (i, part) in parts.iter().enumerate() {
+        groups.entry(&part.name).or_default().push(i);
     }
-    let mut names = vec![String::new(); models.len()];
+    let mut count = 0;
+    let mut cut = |name: &str| {
+        let mut end = name.len().min(MAX_NAME);
+        while !name.is_char_boundary(end) {
+            end -= 1;
+        }
+        count += usize::from(end < name.len());
+        name[..end].to_owned()
+    };
+    let mut names = vec![String::new(); parts.len()];
     for (name, members) in groups {
-        let materials: Vec<Option<String>> = members
-            .iter()
-            .map(|&i| material_of(&models[i])?.name().map(str::to_owned))
-            .collect();
+        let name = match name {
+            b"" => default_name.to_owned(),
+            name => cut(&shown(name)),
+        };
+        let material = |&i: &usize| {
+            let index = parts[i].material?;
+            Some(cut(&shown(&file.materials.all[index as usize])))
+        };
+        let materials: Vec<Option<String>> = match members.len() {
+            1 => vec![None],
+            _ => members.iter().map(material).collect(),
+        };
         for (i, name) in members.into_iter().zip(tell_apart(&name, &materials)) {
             names[i] = name;
         }
+    }
+    if count > 0 {
+        let limit = MAX_NAME;
+        notes.push(Note::NamesCut { count, limit });
     }
     names
 }
 
 fn make_mesh(
-    source: &tobj::Mesh,
-    prepared: &Prepared,
+    faces: &Faces,
+    file: &Statements,
     part: &str,
     notes: &mut Vec<Note>,
 ) -> Result<Mesh, MeshError> {
-    let positions = vectors(&source.positions);
-    let triangles = triangles(source, &positions);
+    let (vertices, indices) = vertices(&faces.corners);
+    let positions: Vec<DVec3> = vertices
+        .iter()
+        .map(|&[v, ..]| file.positions[v as usize - 1])
+        .collect();
+    let triangles = triangles(faces, &indices, &positions);
     let mut mesh = Mesh::new(positions, triangles)?;
-    let normals = vectors(&source.normals);
-    // All zero is the substitute for none at all.
+    let normal = |&[.., vn]: &[u32; 3]| match vn {
+        0 => DVec3::ZERO,
+        vn => file.normals[vn as usize - 1],
+    };
+    let normals: Vec<DVec3> = vertices.iter().map(normal).collect();
+    // All zero is none at all.
     if normals.iter().any(|&normal| normal != DVec3::ZERO) {
         let (repaired, count) = replace_zero_normals(mesh.with_normals(normals)?);
         mesh = repaired;
         if count > 0 {
             let mesh = format!("part {part:?}");
-            add_note(notes, Note::Normals { mesh, count });
+            notes.push(Note::Normals { mesh, count });
         }
     }
-    let missing = source
-        .texcoords
-        .chunks_exact(2)
-        .filter(|uv| uv[0].is_nan())
-        .count();
-    if missing < source.texcoords.len() / 2 {
-        if missing > 0 {
+    let pair = |&[_, vt, _]: &[u32; 3]| match vt {
+        0 => DVec2::NAN,
+        vt => file.texture_coordinates[vt as usize - 1],
+    };
+    let pairs: Vec<DVec2> = vertices.iter().map(pair).collect();
+    let count = pairs.iter().filter(|pair| pair.is_nan()).count();
+    if count < pairs.len() {
+        if count > 0 {
             let part = part.to_owned();
-            let count = missing;
-            add_note(notes, Note::TextureCoordinates { part, count });
+            notes.push(Note::TextureCoordinates { part, count });
         }
-        let pairs = source.texcoords.chunks_exact(2);
-        mesh = mesh.with_texture_coordinates(pairs.map(texture_coordinate).collect())?;
+        mesh = mesh.with_texture_coordinates(pairs.iter().map(texture_coordinate).collect())?;
     }
-    if prepared.has_colors {
-        let colors = vectors(&source.vertex_color);
-        let outside = |c: &&DVec3| c.clamp(DVec3::ZERO, DVec3::ONE) != **c;
-        let count = colors.iter().filter(outside).count();
+    if !file.colors.is_empty() {
+        let colors = vertices.iter().map(|&[v, ..]| file.colors[v as usize - 1]);
+        let outside = |c: &DVec3| c.clamp(DVec3::ZERO, DVec3::ONE) != *c;
+        let count = colors.clone().filter(outside).count();
         if count > 0 {
             let mesh = format!("part {part:?}");
-            add_note(notes, Note::ColorsClamped { mesh, count });
+            notes.push(Note::ColorsClamped { mesh, count });
         }
-        mesh = mesh.with_colors(colors.into_iter().map(linear_color).collect())?;
+        mesh = mesh.with_colors(colors.map(linear_color).collect())?;
     }
     Ok(mesh)
 }
 
-fn vectors(numbers: &[f64]) -> Vec<DVec3> {
-    numbers.chunks_exact(3).map(DVec3::from_slice).collect()
+/// The different corners, in the order of their first use, and which of them each corner is.
+fn vertices(corners: &[[u32; 3]]) -> (Vec<[u32; 3]>, Vec<u32>) {
+    let mut numbers = HashMap::new();
+    let mut vertices = vec![];
+    let number = |&corner: &[u32; 3]| {
+        *numbers.entry(corner).or_insert_with(|| {
+            vertices.push(corner);
+            vertices.len() as u32 - 1
+        })
+    };
+    let indices = corners.iter().map(number).collect();
+    (vertices, indices)
 }
 
 /// The faces of a part as triangles.
-fn triangles(source: &tobj::Mesh, positions: &[DVec3]) -> Vec<[u32; 3]> {
-    // Without arities all faces are triangles.
-    if source.face_arities.is_empty() {
-        return source.indices.as_chunks().0.to_vec();
-    }
-    let mut rest = source.indices.as_slice();
+fn triangles(faces: &Faces, indices: &[u32], positions: &[DVec3]) -> Vec<[u32; 3]> {
+    let mut rest = indices;
     let mut triangles = vec![];
-    for &arity in &source.face_arities {
+    for &arity in &faces.arities {
         let (face, others) = rest.split_at(arity as usize);
         rest = others;
+        if let &[a, b, c] = face {
+            triangles.push([a, b, c]);
+            continue;
+        }
         let corners: Vec<DVec3> = face.iter().map(|&i| positions[i as usize]).collect();
         let of_face = triangulate(&corners);
         triangles.extend(of_face.into_iter().map(|corners| corners.map(|i| face[i])));
@@ -259,10 +291,10 @@ fn triangles(source: &tobj::Mesh, positions: &[DVec3]) -> Vec<[u32; 3]> {
 }
 
 /// OBJ counts v from the lower edge of an image, glTF from the upper one.
-fn texture_coordinate(uv: &[f64]) -> Vec2 {
-    match uv[0].is_nan() {
+fn texture_coordinate(uv: &DVec2) -> Vec2 {
+    match uv.is_nan() {
         true => Vec2::ZERO,
-        false => Vec2::new(uv[0] as f32, (1.0 - uv[1]) as f32),
+        false => Vec2::new(uv.x as f32, (1.0 - uv.y) as f32),
     }
 }
 

@@ -5,6 +5,8 @@
 //! The usual crates leave out corners on straight edges: that would open cracks towards the neighbours
 //! once the surface is bent.
 
+use std::collections::{BTreeSet, HashMap};
+
 use glam::{DVec2, DVec3};
 
 /// The `n - 2` triangles of a polygon with the given corners, wound as it is; each is three numbers of
@@ -36,42 +38,162 @@ fn flattened(corners: &[DVec3]) -> Vec<DVec2> {
 }
 
 fn clip_ears(flat: &[DVec2]) -> Vec<[usize; 3]> {
-    let mut left: Vec<usize> = (0..flat.len()).collect();
+    let count = flat.len();
+    if count < 3 {
+        return vec![];
+    }
+    let mut before: Vec<usize> = (0..count).map(|i| (i + count - 1) % count).collect();
+    let mut behind: Vec<usize> = (0..count).map(|i| (i + 1) % count).collect();
+    let mut grid = Grid::new(flat);
+    // Corners that may be ears; the others wait for a corner in their triangle to be clipped.
+    let mut candidates: BTreeSet<usize> = (0..count).collect();
+    let mut waiting: HashMap<usize, Vec<usize>> = HashMap::new();
     let mut triangles = vec![];
     let mut start = 0;
-    while left.len() > 3 {
-        let count = left.len();
+    while triangles.len() + 3 < count {
         // Going on behind the last ear keeps the triangles from all meeting in one corner.
-        let ear = (start..start + count)
-            .map(|i| i % count)
-            .find(|&i| is_ear(flat, &left, i));
-        let Some(ear) = ear else {
+        let next = candidates.range(start..).next().or(candidates.first());
+        let Some(&i) = next else {
             break;
         };
-        triangles.push([
-            left[(ear + count - 1) % count],
-            left[ear],
-            left[(ear + 1) % count],
-        ]);
-        left.remove(ear);
-        start = ear + 1;
+        candidates.remove(&i);
+        start = i;
+        let corners = [before[i], i, behind[i]];
+        let triangle = corners.map(|corner| flat[corner]);
+        let [a, b, c] = triangle;
+        // What does not stick out may do so when a neighbour is clipped.
+        if !(area(a, b, c) > 0.0) {
+            continue;
+        }
+        if let Some(corner) = grid.find_in(triangle) {
+            waiting.entry(corner).or_default().push(i);
+            continue;
+        }
+        triangles.push(corners);
+        grid.remove(i, b);
+        let [first, _, last] = corners;
+        (behind[first], before[last]) = (last, first);
+        // Those in the way of others may be the neighbours of these now, which then are tried again.
+        let waited = waiting.remove(&i).unwrap_or_default();
+        let is_left = |&j: &usize| behind[before[j]] == j;
+        candidates.extend(waited.into_iter().filter(is_left));
+        candidates.extend([first, last]);
+        start = behind[last];
     }
+    let mut left = vec![];
+    let mut corner = start;
+    // The lowest number first, as in a polygon that no ear was clipped from.
+    for _ in 0..count - triangles.len() {
+        left.push(corner);
+        corner = behind[corner];
+    }
+    let lowest = (0..left.len()).min_by_key(|&i| left[i]).unwrap_or_default();
+    left.rotate_left(lowest);
     triangles.extend(fan(&left));
     triangles
 }
 
-/// Whether corner `i` of those left sticks out and its triangle holds no other corner.
-fn is_ear(flat: &[DVec2], left: &[usize], i: usize) -> bool {
-    let count = left.len();
-    let at = |i: usize| flat[left[i % count]];
-    let (a, b, c) = (at(i + count - 1), at(i), at(i + 1));
-    let holds = |p: DVec2| {
-        ![a, b, c].contains(&p)
-            && area(a, b, p) >= 0.0
-            && area(b, c, p) >= 0.0
-            && area(c, a, p) >= 0.0
-    };
-    area(a, b, c) > 0.0 && !left.iter().any(|&corner| holds(flat[corner]))
+/// The corners of a polygon in square order, about one to a cell, so that those in a triangle are found fast.
+struct Grid<'a> {
+    flat: &'a [DVec2],
+    low: DVec2,
+    /// Cells for one unit of length.
+    density: DVec2,
+    /// How many cells there are along either axis.
+    side: usize,
+    cells: Vec<Vec<usize>>,
+}
+
+impl<'a> Grid<'a> {
+    fn new(flat: &'a [DVec2]) -> Self {
+        let low = flat.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+        let high = flat.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let side = flat.len().isqrt().max(1);
+        let density = side as f64 / (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
+        let mut grid = Self {
+            flat,
+            low,
+            density,
+            side,
+            cells: vec![vec![]; side * side],
+        };
+        for (i, &point) in flat.iter().enumerate() {
+            let cell = grid.cell(point);
+            grid.cells[cell].push(i);
+        }
+        grid
+    }
+
+    /// The row or column of a coordinate; it grows with the coordinate.
+    fn place(&self, point: DVec2, axis: usize) -> usize {
+        let place = (point[axis] - self.low[axis]) * self.density[axis];
+        (place as usize).min(self.side - 1)
+    }
+
+    fn cell(&self, point: DVec2) -> usize {
+        self.place(point, 1) * self.side + self.place(point, 0)
+    }
+
+    fn remove(&mut self, corner: usize, point: DVec2) {
+        let cell = self.cell(point);
+        self.cells[cell].retain(|&other| other != corner);
+    }
+
+    /// A corner in a counter-clockwise triangle or on its edge, but not at one of its corners.
+    fn find_in(&self, triangle: [DVec2; 3]) -> Option<usize> {
+        let [a, b, c] = triangle;
+        let holds = |p: DVec2| {
+            !triangle.contains(&p)
+                && area(a, b, p) >= 0.0
+                && area(b, c, p) >= 0.0
+                && area(c, a, p) >= 0.0
+        };
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        (self.place(low, 1)..=self.place(high, 1)).find_map(|row| {
+            let (first, last) =
+                self.columns(triangle, row, self.place(low, 0), self.place(high, 0));
+            let cells = &self.cells[row * self.side..][first..=last];
+            let mut corners = cells.iter().flatten();
+            corners.find(|&&corner| holds(self.flat[corner])).copied()
+        })
+    }
+
+    /// The columns, of those from `first` to `last`, that a triangle has in a row, and some more against rounding.
+    fn columns(
+        &self,
+        [a, b, c]: [DVec2; 3],
+        row: usize,
+        first: usize,
+        last: usize,
+    ) -> (usize, usize) {
+        if last - first < 4 {
+            return (first, last);
+        }
+        // In cells; half a cell more on either side.
+        let [a, b, c] = [a, b, c].map(|point| (point - self.low) * self.density);
+        let (bottom, top) = (row as f64 - 0.5, row as f64 + 1.5);
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            let rise = to.y - from.y;
+            if from.y.max(to.y) < bottom || from.y.min(to.y) > top {
+                continue;
+            }
+            for y in [bottom, top] {
+                let along = match rise.abs() < 1e-6 {
+                    // All of a level edge counts.
+                    true => f64::from(u8::from(y == top)),
+                    false => ((y - from.y) / rise).clamp(0.0, 1.0),
+                };
+                let x = from.x + along * (to.x - from.x);
+                (low, high) = (low.min(x), high.max(x));
+            }
+        }
+        if !(low <= high) {
+            return (first, last);
+        }
+        let low = ((low - 1.0) as usize).clamp(first, last);
+        (low, ((high + 1.0) as usize).clamp(low, last))
+    }
 }
 
 /// Twice the area of a triangle, negative where it is clockwise.
@@ -158,6 +280,53 @@ mod tests {
     fn a_corner_on_a_straight_edge_is_kept() {
         check(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)]);
         check(&[(0.0, 0.0), (1.0, 0.5), (2.0, 1.0), (0.0, 2.0), (1.0, 1.0)]);
+    }
+
+    /// Checks what `check` does of a polygon with many corners, relative to its size.
+    fn check_large(corners: &[DVec2]) {
+        let triangles = triangulate(&corners.iter().map(|p| p.extend(0.0)).collect::<Vec<_>>());
+        assert_eq!(triangles.len(), corners.len() - 2);
+        let mut used = vec![false; corners.len()];
+        let pairs = (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]));
+        let whole: f64 = pairs.map(|(p, q)| p.perp_dot(q)).sum();
+        let mut covered = 0.0;
+        for &[a, b, c] in &triangles {
+            let part = area(corners[a], corners[b], corners[c]) * whole.signum();
+            assert!(part > -1e-9, "[{a}, {b}, {c}] faces away");
+            covered += part;
+            for corner in [a, b, c] {
+                used[corner] = true;
+            }
+        }
+        assert!(used.iter().all(|&used| used));
+        assert!(
+            (covered / whole.abs() - 1.0).abs() < 1e-9,
+            "{covered} of {whole}"
+        );
+    }
+
+    #[test]
+    fn polygons_of_many_corners_are_covered_in_time() {
+        let start = std::time::Instant::now();
+        let half = 10_000;
+        // A saw over a straight edge with corners on it.
+        let edge = (0..half).map(|i| DVec2::new(f64::from(i), 0.0));
+        let teeth = (0..half).rev().map(|i| {
+            let up = f64::from(i % 2) * 0.5 + 0.25;
+            DVec2::new(f64::from(i) + up, 1.0 + 50.0 * up)
+        });
+        check_large(&edge.chain(teeth).collect::<Vec<_>>());
+        // A spiral, out and back.
+        let arm = |i: i32, radius: f64| {
+            let turn = f64::from(i) * 0.01;
+            (radius + turn) * DVec2::from_angle(turn)
+        };
+        let there = (0..half).map(|i| arm(i, 1.0));
+        let back = (0..half).rev().map(|i| arm(i, 2.5));
+        check_large(&there.chain(back).collect::<Vec<_>>());
+        // Looking at all corners for each ear in turn takes minutes for each.
+        let seconds = start.elapsed().as_secs_f64();
+        assert!(seconds < 30.0, "{seconds} s");
     }
 
     #[test]
