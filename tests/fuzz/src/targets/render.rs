@@ -1,0 +1,105 @@
+//! The whole way to a small picture.
+
+use photosurface::{
+    Camera, Color, PictureOptions, PictureSize, Precision, Projection, Scenery, Stage, Viewpoint,
+    Wanted,
+};
+
+use super::case::{Case, Picture};
+use super::in_folder;
+use super::reading::check_message;
+
+/// Takes a picture of a [`Case`] at each of its steps, as the command does.
+pub fn render(bytes: &[u8]) {
+    let case = Case::new(bytes);
+    in_folder(|folder| {
+        let Some(stage) = case.stage(folder) else {
+            return;
+        };
+        take(&case, stage);
+    });
+}
+
+fn take(case: &Case, stage: Stage) {
+    let Picture {
+        size: [width, height],
+        samples,
+        fov,
+        look,
+        from,
+        by_mesh,
+        wireframe,
+    } = case.picture;
+    let size = PictureSize::new(width, height).expect("a few pixels are a picture");
+    let projection = match fov {
+        Some(vertical_fov_deg) => Projection::Pinhole { vertical_fov_deg },
+        None => Projection::FullSky,
+    };
+    let camera = match Camera::new(size, projection, look.into()) {
+        Ok(camera) => camera,
+        Err(error) => return check_message(&error),
+    };
+    let options = PictureOptions {
+        samples,
+        wireframe: wireframe.then_some(Color([0x2c, 0x3e, 0x50])),
+        ..PictureOptions::default()
+    };
+    let wanted = Wanted {
+        subdivide: case.subdivide,
+        precision: Precision::Double,
+        ..Wanted::default()
+    };
+    let by_mesh = by_mesh || from.is_some();
+    let stage = match by_mesh && case.subdivide {
+        true => stage.within_budget(wanted, case.budget).0,
+        false => stage,
+    };
+    let line = stage.scene().observer().world_line();
+    let at_rest = match by_mesh {
+        true => None,
+        false => Some(at_rest(&stage)),
+    };
+    for (step, &proper_time) in stage.scene().steps().iter().enumerate() {
+        let viewpoint = match from {
+            Some(place) => Viewpoint::Outside(place.into()),
+            None => Viewpoint::Observer(&line, proper_time),
+        };
+        let seen;
+        let scenery = match &at_rest {
+            Some(scenery) => scenery,
+            None => {
+                seen = photosurfaces(&stage, step, wanted);
+                &seen
+            }
+        };
+        let picture = scenery.picture(&camera, viewpoint, options, &|| ());
+        let mut png = vec![];
+        picture.write_png(&mut png).expect("memory takes a picture");
+        assert!(png.starts_with(b"\x89PNG"));
+    }
+}
+
+fn at_rest(stage: &Stage) -> Scenery {
+    let mut scenery = Scenery::new();
+    for (object, parts) in stage.objects() {
+        for (_, part) in parts {
+            scenery.add_at_rest(object, part);
+        }
+    }
+    scenery
+}
+
+fn photosurfaces(stage: &Stage, step: usize, wanted: Wanted) -> Scenery {
+    let mut scenery = Scenery::new();
+    if let Some(marker) = stage.marker() {
+        scenery.add_plain(marker);
+    }
+    for surface in stage.photosurfaces(step, wanted) {
+        let mut objects = stage.scene().objects().iter();
+        let object = objects
+            .find(|object| object.name == surface.facts.object)
+            .expect("a photosurface is of an object of its scene");
+        scenery.add_photosurface(object, &surface.mesh, surface.material.as_ref());
+    }
+    scenery
+}
