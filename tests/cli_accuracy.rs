@@ -330,8 +330,8 @@ fn whether_an_angle_can_be_kept_is_foretold() {
 fn a_budget_holds_exactly_but_for_the_source() {
     let workplace = Workplace::new();
     let plate = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\n";
-    workplace.write("plate.obj", &format!("{plate}f 1 2 3 4\n"));
-    workplace.write("flag.obj", &format!("{plate}o a\nf 1 2 3\no b\nf 1 3 4\n"));
+    workplace.write("plate.obj", format!("{plate}f 1 2 3 4\n"));
+    workplace.write("flag.obj", format!("{plate}o a\nf 1 2 3\no b\nf 1 3 4\n"));
     let inside = "--direction 1,0,0 --observer 0.13,0,-0.21";
     let steep = "--rapidity 35.69 --steps=-51450,0,3939621,-24847 --tolerance 1.0004e-8";
     let thin = "--rapidity 20 --steps=-1,0,2 --direction 1,2,3 --tolerance deg:1";

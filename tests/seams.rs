@@ -1,6 +1,11 @@
 //! Parts of one object that share corners share them bit for bit in every file, however a reader adds up an offset and
 //! what is relative to it: nothing is welded with a tolerance here.
 
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot be set up has failed"
+)]
+
 mod common;
 
 use std::collections::HashMap;

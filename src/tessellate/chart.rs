@@ -172,12 +172,12 @@ impl Chart {
         let radius = w.length();
         match radius {
             0.0 => DVec2::ZERO,
-            _ => w * (self.from_foot(radius) / radius),
+            _ => w * (self.distance_in_plane(radius) / radius),
         }
     }
 
     /// How far from the foot a place is that is so far from it in a chart with a power.
-    fn from_foot(&self, radius: f64) -> f64 {
+    fn distance_in_plane(&self, radius: f64) -> f64 {
         let Self {
             height,
             power,
@@ -232,7 +232,7 @@ impl Chart {
         if self.power == 0.0 {
             return 4.0 * self.height / (1.0 - square * square).max(f64::EPSILON);
         }
-        let distance = self.from_foot(square.sqrt()).hypot(self.height);
+        let distance = self.distance_in_plane(square.sqrt()).hypot(self.height);
         let on_sky = (distance + self.height).powi(2) / distance;
         let metric = on_sky * (self.reach / distance).powf(2.0 * self.power);
         // Next to the foot there is nothing to be told apart.
