@@ -185,7 +185,7 @@ fn a_signal_at_any_moment_leaves_all_or_nothing() {
 fn check_pair(workplace: &Workplace) {
     let json = workplace.read_json("out.gltf");
     let buffer = &json["buffers"][0];
-    let data = buffer["uri"].as_str().unwrap();
+    let data = buffer["uri"].as_str().expect("a name");
     let files = workplace.files().into_iter();
     let inputs = ["ball.json", "square.obj"];
     let files: Vec<_> = files.filter(|file| !inputs.contains(&&**file)).collect();
