@@ -283,7 +283,9 @@ mod tests {
                 panic!("a scene of shapes")
             };
             for part in shape.model(appearance).unwrap().parts {
-                let part = part.transformed(&object.model_to_rest());
+                let mut part = part.transformed(&object.model_to_rest());
+                // Textures do not matter here and take long to decode.
+                part.material = None;
                 scenery.add_at_rest(object, &part).unwrap();
             }
         }
@@ -384,7 +386,6 @@ mod tests {
             ("of many velocities", |k| f64::from(k % 97) / 100.0),
         ] {
             let [few, many] = [250, 4000].map(|count| boxes_a_ray(count, beta));
-            println!("{name}: {few} {many}");
             assert!(many < 4.0 * few && many < 400.0, "{name}: {few} {many}");
         }
     }
@@ -402,7 +403,8 @@ mod tests {
         for k in 0..4000 {
             let place = DVec3::new(f64::from(k % 63) - 31.0, f64::from(k / 63) - 31.0, -20.0);
             let moved = glam::DAffine3::from_translation(3.0 * place);
-            let part = model.parts[0].clone().transformed(&moved);
+            let mut part = model.parts[0].clone().transformed(&moved);
+            part.material = None;
             scenery.add_at_rest(&object, &part).unwrap();
         }
         let crowd = Crowd::new(scenery.bodies.iter(), Viewpoint::Outside(DVec3::ZERO));
@@ -412,7 +414,6 @@ mod tests {
             hits += u32::from(crowd.nearest(seen, 0.0, f64::MAX, false).is_some());
         }
         let boxes = counted::BOXES.get() as f64 / (96.0 * 72.0 * 9.0);
-        println!("{boxes} boxes a ray, {hits} hits");
         assert!(hits > 1000 && boxes < 100.0, "{boxes} {hits}");
     }
 }
