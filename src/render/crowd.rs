@@ -286,7 +286,7 @@ mod tests {
                 let mut part = part.transformed(&object.model_to_rest());
                 // Textures do not matter here and take long to decode.
                 part.material = None;
-                scenery.add_at_rest(object, &part).unwrap();
+                scenery.add_at_rest(object, &part);
             }
         }
         scenery
@@ -405,7 +405,7 @@ mod tests {
             let moved = glam::DAffine3::from_translation(3.0 * place);
             let mut part = model.parts[0].clone().transformed(&moved);
             part.material = None;
-            scenery.add_at_rest(&object, &part).unwrap();
+            scenery.add_at_rest(&object, &part);
         }
         let crowd = Crowd::new(scenery.bodies.iter(), Viewpoint::Outside(DVec3::ZERO));
         counted::BOXES.set(0);
