@@ -283,12 +283,3 @@ fn cameras_look_somewhere_at_any_speed() {
         }
     }
 }
-
-#[test]
-fn a_camera_in_the_middle_of_what_it_frames_is_told_by_its_flag() {
-    let workplace = Workplace::with_ball();
-    workplace.write("point.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    workplace
-        .run("render point.obj --beta 0 --observer 0,0,0 --view outside --from 0.5,0.5,0 --size 16x12 -o p.png")
-        .error(&["--from", "expected another place"]);
-}

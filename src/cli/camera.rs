@@ -221,21 +221,22 @@ impl CameraArgs {
         let distance = frames.iter().map(|frame| frame.1).fold(0.0, f64::max);
         let outside = |(target, _): (DVec3, f64)| {
             let place = self.from.unwrap_or(target + away * distance);
+            let distance = match self.from {
+                Some(from) => length(from - target),
+                None => distance,
+            };
+            let height = 2.0 * half * distance;
             ensure!(
-                target.is_finite() && place.is_finite() && (2.0 * half * distance).is_finite(),
+                target.is_finite() && place.is_finite() && height.is_finite(),
                 "what is to be seen is so far away or so large, up to {:e}, that no camera outside can frame it; look at other \
                  --steps, or at a lower speed",
                 places_reach(places)
             );
             let camera = self.camera(fov, self.look.unwrap_or(target - place))?;
-            let distance = match self.from {
-                Some(from) => from.distance(target),
-                None => distance,
-            };
             Ok(Outside {
                 camera,
                 place,
-                height: 2.0 * half * distance,
+                height,
             })
         };
         frames.into_iter().map(outside).collect()
@@ -281,6 +282,15 @@ fn fair(place: DVec3) -> DVec3 {
     let scale = if largest < 1.0 { 1e160 } else { 1e-160 };
     let nearer = place * scale;
     nearer / nearer.abs().max_element()
+}
+
+/// The length of a vector, also where its square overflows or vanishes.
+fn length(vector: DVec3) -> f64 {
+    let largest = vector.abs().max_element();
+    match (1e-140..1e140).contains(&largest) || !(largest > 0.0 && vector.is_finite()) {
+        true => vector.length(),
+        false => (vector / largest).length() * largest,
+    }
 }
 
 /// How far from `target` a camera has to be at least so that it looks at it in spite of roundings, and at a single point

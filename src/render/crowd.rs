@@ -263,3 +263,157 @@ impl Path {
         (seen * self.stretch).min(f64::MAX)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::mesh::{Appearance, Shape};
+    use crate::render::tree::counted;
+    use crate::render::{Camera, PictureSize, Projection, Scenery, grid_places};
+    use crate::scene::{BuiltInScene, Scene, Source};
+    use glam::DVec2;
+
+    /// All objects of a scene of shapes at rest.
+    fn scenery(scene: &Scene) -> Scenery {
+        let mut scenery = Scenery::new();
+        for object in scene.objects() {
+            let Source::Shape(shape, appearance) = &object.source else {
+                panic!("a scene of shapes")
+            };
+            for part in shape.model(appearance).unwrap().parts {
+                let mut part = part.transformed(&object.model_to_rest());
+                // Textures do not matter here and take long to decode.
+                part.material = None;
+                scenery.add_at_rest(object, &part);
+            }
+        }
+        scenery
+    }
+
+    fn camera(look: DVec3) -> Camera {
+        let size = PictureSize::new(96, 72).unwrap();
+        let projection = Projection::Pinhole {
+            vertical_fov_deg: 60.0,
+        };
+        Camera::new(size, projection, look).unwrap()
+    }
+
+    fn rays(camera: &Camera) -> impl Iterator<Item = DVec3> {
+        let (width, height) = (camera.size().width(), camera.size().height());
+        let corners = (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)));
+        corners.flat_map(move |(x, y)| {
+            grid_places(3)
+                .map(move |place| camera.direction(DVec2::new(x.into(), y.into()) + place))
+        })
+    }
+
+    /// Every body alone is the judge: the nearest is what is seen, and of several at one distance the first.
+    #[test]
+    fn a_crowd_finds_what_asking_every_body_finds() {
+        for (name, look) in [
+            ("street", DVec3::NEG_Z),
+            ("street", DVec3::Z),
+            ("cube", DVec3::X),
+        ] {
+            let scene = Scene::from_json(BuiltInScene::named(name).unwrap().json).unwrap();
+            let scenery = scenery(&scene);
+            let line = scene.observer().world_line();
+            let viewpoint = Viewpoint::Observer(&line, scene.steps()[0]);
+            let crowd = Crowd::new(scenery.bodies.iter(), viewpoint);
+            let alone = scenery.bodies.iter();
+            let alone: Vec<_> = alone
+                .map(|body| Crowd::new(std::iter::once(body), viewpoint))
+                .collect();
+            for seen in rays(&camera(look)) {
+                let mut nearest: Option<Meeting> = None;
+                for meeting in alone
+                    .iter()
+                    .filter_map(|one| one.nearest(seen, 0.0, f64::MAX, false))
+                {
+                    if nearest
+                        .as_ref()
+                        .is_none_or(|nearest| meeting.distance < nearest.distance)
+                    {
+                        nearest = Some(meeting);
+                    }
+                }
+                let found = crowd.nearest(seen, 0.0, f64::MAX, false);
+                let told =
+                    |meeting: Meeting| (meeting.distance, meeting.brightness, meeting.texture);
+                assert_eq!(found.map(told), nearest.map(told), "{name} {seen}");
+            }
+        }
+    }
+
+    /// The mean number of boxes a ray is held against before a field of cubes with these velocities; some are hit.
+    fn boxes_a_ray(count: u32, beta: impl Fn(u32) -> f64) -> f64 {
+        let side = f64::from(count).sqrt().ceil();
+        let objects = (0..count).map(|k| {
+            let (x, z) = (f64::from(k) % side, (f64::from(k) / side).floor());
+            json!({
+                "name": format!("cube{k}"),
+                "shape": { "box": { "size": [1, 1, 1] } },
+                "position": [3.0 * (x - side / 2.0), -6, -6.0 - 3.0 * z],
+                "velocity": { "beta": beta(k), "direction": [1, 0, 0] },
+            })
+        });
+        let scene = json!({
+            "observer": { "velocity": { "beta": 0.8 } },
+            "objects": objects.collect::<Vec<_>>(),
+        });
+        let scene = Scene::from_json(&scene.to_string()).unwrap();
+        let scenery = scenery(&scene);
+        let line = scene.observer().world_line();
+        let crowd = Crowd::new(scenery.bodies.iter(), Viewpoint::Observer(&line, 0.0));
+        counted::BOXES.set(0);
+        let (mut rays_cast, mut hits) = (0, 0);
+        for seen in rays(&camera(DVec3::NEG_Z)).step_by(7) {
+            rays_cast += 1;
+            hits += u32::from(crowd.nearest(seen, 0.0, f64::MAX, false).is_some());
+        }
+        assert!(hits > 100, "{hits}");
+        counted::BOXES.get() as f64 / f64::from(rays_cast)
+    }
+
+    /// Work that is counted, not timed: with sixteen times as many objects, a few times as many boxes, since a ray near
+    /// the horizon passes above more of them.
+    #[test]
+    fn a_ray_asks_few_of_many_objects() {
+        for (name, beta) in [
+            ("of one velocity", (|_| 0.5) as fn(u32) -> f64),
+            ("of many velocities", |k| f64::from(k % 97) / 100.0),
+        ] {
+            let [few, many] = [250, 4000].map(|count| boxes_a_ray(count, beta));
+            assert!(many < 4.0 * few && many < 400.0, "{name}: {few} {many}");
+        }
+    }
+
+    /// Parts of one object: far fewer boxes than parts.
+    #[test]
+    fn a_ray_asks_few_of_many_parts() {
+        let model = Shape::cuboid([1.0; 3])
+            .unwrap()
+            .model(&Appearance::default())
+            .unwrap();
+        let object =
+            crate::scene::Object::new("cubes", Source::Model(std::sync::Arc::new(model.clone())));
+        let mut scenery = Scenery::new();
+        for k in 0..4000 {
+            let place = DVec3::new(f64::from(k % 63) - 31.0, f64::from(k / 63) - 31.0, -20.0);
+            let moved = glam::DAffine3::from_translation(3.0 * place);
+            let mut part = model.parts[0].clone().transformed(&moved);
+            part.material = None;
+            scenery.add_at_rest(&object, &part);
+        }
+        let crowd = Crowd::new(scenery.bodies.iter(), Viewpoint::Outside(DVec3::ZERO));
+        counted::BOXES.set(0);
+        let mut hits = 0;
+        for seen in rays(&camera(DVec3::NEG_Z)) {
+            hits += u32::from(crowd.nearest(seen, 0.0, f64::MAX, false).is_some());
+        }
+        let boxes = counted::BOXES.get() as f64 / (96.0 * 72.0 * 9.0);
+        assert!(hits > 1000 && boxes < 100.0, "{boxes} {hits}");
+    }
+}

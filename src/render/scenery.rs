@@ -70,7 +70,7 @@ const FACETS: f64 = 1e-4;
 /// ```
 #[derive(Default)]
 pub struct Scenery {
-    bodies: Vec<Body>,
+    pub(super) bodies: Vec<Body>,
     /// Each with its linear colour.
     ghosts: Vec<(Body, Vec3)>,
     textures: Textures,
