@@ -66,6 +66,105 @@ fn statements_may_be_in_lower_case_and_pictures_in_quotes() {
     assert_eq!(materials(&read(&fixture("lower_map.obj")).0), [("m", RED)]);
 }
 
+/// The pixels of the texture in a slot of the only material of a file.
+fn pixels(model: &Model, slot: &str) -> image::RgbaImage {
+    let material = model.parts[0].material.as_ref().expect("a material");
+    let index = &material.properties()["pbrMetallicRoughness"][slot]["index"];
+    let index = index.as_u64().expect("a texture") as usize;
+    let image = material.textures()[index].image().expect("an image");
+    let decoded = image::load_from_memory(image.bytes()).expect("a PNG");
+    decoded.to_rgba8()
+}
+
+#[test]
+fn opacity_roughness_and_metalness_are_packed_as_gltf_has_them() {
+    let (model, notes) = read(&fixture("pbrmaps.obj"));
+    // BT.709: red weighs 0.2126.
+    let grey = 54;
+    let opacity = pixels(&model, "baseColorTexture");
+    assert_eq!(opacity.dimensions(), (2, 2));
+    assert!(opacity.pixels().all(|p| p.0 == [255, 255, 255, grey]));
+    let gloss = pixels(&model, "metallicRoughnessTexture");
+    assert!(gloss.pixels().all(|p| p.0 == [255, grey, grey, 255]));
+    let material = model.parts[0].material.as_ref().expect("a material");
+    let properties = material.properties();
+    let surface = &properties["pbrMetallicRoughness"];
+    assert_eq!(surface["roughnessFactor"], 0.5);
+    assert_eq!(surface["metallicFactor"], 1.0);
+    assert_eq!(properties["alphaMode"], "BLEND");
+    // Only the picture of the colour, which is not there, is spoken of.
+    assert_eq!(notes.len(), 1, "{notes:?}");
+    assert!(notes[0].starts_with("image \"my red tex.png\" dropped"));
+}
+
+#[test]
+fn packed_pictures_may_differ_in_size_and_lie_but_not_exceed_the_limit() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = |name: &str| folder.path().join(name);
+    let rough = image::GrayImage::from_fn(2, 1, |x, _| image::Luma([200 * x as u8]));
+    rough.save(file("rough.png")).expect("a picture");
+    let metal = image::GrayImage::from_pixel(4, 3, image::Luma([77]));
+    metal.save(file("metal.png")).expect("a picture");
+    let color = image::RgbImage::from_fn(4, 3, |x, y| image::Rgb([x as u8, y as u8, 9]));
+    color.save(file("color.png")).expect("a picture");
+    let clear = image::RgbaImage::from_fn(4, 3, |x, y| image::Rgba([5, 5, 5, (50 * x + y) as u8]));
+    clear.save(file("clear.png")).expect("a picture");
+    let obj = "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n";
+    std::fs::write(file("a.obj"), obj).expect("a file");
+    let with = |library: &str, max_texture_pixels: u64| {
+        std::fs::write(file("a.mtl"), format!("newmtl m\n{library}\n")).expect("a file");
+        let access = photosurface::Access {
+            max_texture_pixels,
+            ..photosurface::Access::default()
+        };
+        let (model, findings) = access.read_model(&file("a.obj")).expect("a model");
+        let notes: Vec<String> = findings.notes.iter().map(ToString::to_string).collect();
+        (model, notes)
+    };
+    let maps = "Pm 0\nmap_Pr rough.png\nmap_Pm metal.png\nmap_Kd color.png\nmap_d clear.png";
+    let (model, notes) = with(maps, 1 << 20);
+    let gloss = pixels(&model, "metallicRoughnessTexture");
+    assert_eq!(gloss.dimensions(), (4, 3));
+    assert!(gloss.pixels().all(|p| p.0[2] == 77));
+    let row: Vec<u8> = (0..4).map(|x| gloss.get_pixel(x, 1).0[1]).collect();
+    assert_eq!((row[0], row[3]), (0, 200));
+    assert!(row.is_sorted() && row[1] < 100 && row[2] > 100, "{row:?}");
+    let expected =
+        "image \"rough + metal\" made of pictures of different sizes: scaled to the larger one";
+    assert_eq!(notes, [expected]);
+    let base = pixels(&model, "baseColorTexture");
+    for (x, y, pixel) in base.enumerate_pixels() {
+        assert_eq!(pixel.0, [x as u8, y as u8, 9, (50 * x + y) as u8]);
+    }
+    let material = model.parts[0].material.as_ref().expect("a material");
+    let surface = &material.properties()["pbrMetallicRoughness"];
+    // Zero would hide the picture.
+    assert_eq!(surface["metallicFactor"], 1.0);
+    assert_eq!(surface["roughnessFactor"], 1.0);
+
+    // A picture that lies in another way cannot be put together with another, nor one above the limit.
+    let (model, notes) = with("Pm 0\nmap_Pr rough.png\nmap_Pm -s 2 2 2 metal.png", 1 << 20);
+    let material = model.parts[0].material.as_ref().expect("a material");
+    let surface = &material.properties()["pbrMetallicRoughness"];
+    assert_eq!(surface["metallicFactor"], 0.0);
+    assert_eq!(
+        pixels(&model, "metallicRoughnessTexture").dimensions(),
+        (2, 1)
+    );
+    let expected = "material \"m\": map_Pm (laid in another way than map_Pr) not carried over";
+    assert_eq!(notes, [expected]);
+    let (model, notes) = with("map_Pr rough.png\nmap_Pm metal.png", 20);
+    let material = model.parts[0].material.as_ref().expect("a material");
+    assert!(material.textures().is_empty());
+    assert_eq!(
+        notes,
+        [
+            "material \"m\": map_Pm (4 x 3 pixels, expected at most 6 more; --max-texture-pixels \
+             allows more) not carried over"
+        ]
+    );
+}
+
 #[test]
 fn what_is_wrong_beside_the_shape_is_passed_over_with_a_note() {
     for (name, note) in [

@@ -3,18 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use super::note::Note;
+use super::uri::Folder;
 
 /// Longer names are those of no file on any system.
 const MAX_PATH: usize = 4096;
 
 /// The path to a file in `folder`, or below it, that `name` may mean: as it says, else without folders from its
-/// front, else without a comment. Where there is no such file, the path as `name` says it.
-pub(super) fn find(folder: &Path, name: &str, notes: &mut Vec<Note>) -> PathBuf {
+/// front, else without a comment; one that `files` allows. Where there is no such file, the path as `name` says it.
+pub(super) fn find(files: &Folder, folder: &Path, name: &str, notes: &mut Vec<Note>) -> PathBuf {
     let as_named = folder.join(slashed(name));
     if name.len() > MAX_PATH {
         return as_named;
     }
-    if is_of_this_folder(name) && as_named.exists() {
+    if is_of_this_folder(name) && files.place_of(&as_named).is_some() {
         return as_named;
     }
     let without_comment = name.split_once(" #").map(|(name, _)| name.trim_end());
@@ -23,7 +24,8 @@ pub(super) fn find(folder: &Path, name: &str, notes: &mut Vec<Note>) -> PathBuf 
         let mut rest = Some(slashed.as_str());
         while let Some(shorter) = rest {
             let path = folder.join(shorter);
-            if !shorter.is_empty() && is_of_this_folder(shorter) && path.exists() {
+            let is_name = !shorter.is_empty() && is_of_this_folder(shorter);
+            if is_name && files.place_of(&path).is_some() {
                 notes.push(Note::FoundElsewhere {
                     named: name.to_owned(),
                     path: path.clone(),
@@ -72,8 +74,43 @@ mod tests {
             ("gone/", "gone/", 0),
         ] {
             let mut notes = vec![];
-            assert_eq!(find(folder, name, &mut notes), folder.join(found), "{name}");
+            let files = Folder::new(folder);
+            let path = find(&files, folder, name, &mut notes);
+            assert_eq!(path, folder.join(found), "{name}");
             assert_eq!(notes.len(), count, "{name}");
         }
+    }
+
+    #[test]
+    fn what_may_not_be_read_is_as_if_it_were_not_there() {
+        let all = tempfile::tempdir().unwrap();
+        let inside = all.path().join("inside");
+        std::fs::create_dir(&inside).unwrap();
+        let files = Folder::new(&inside);
+        let all_found = || {
+            let names = [
+                "../key.png",
+                "gone/../../key.png",
+                "../key.png # red",
+                "a/b/../../../key.png",
+            ];
+            names.map(|name| {
+                let mut notes = vec![];
+                (find(&files, &inside, name, &mut notes), notes)
+            })
+        };
+        let without = all_found();
+        std::fs::write(all.path().join("key.png"), "").unwrap();
+        assert_eq!(all_found(), without);
+        assert!(without.iter().all(|(_, notes)| notes.is_empty()));
+        // It is found where it is allowed.
+        let access = crate::io::read::Access {
+            folders: vec![all.path().to_owned()],
+            ..Default::default()
+        };
+        let files = Folder::within(&inside, access.reach(&inside));
+        let mut notes = vec![];
+        let path = find(&files, &inside, "../key.png # red", &mut notes);
+        assert_eq!((path, notes.len()), (inside.join("../key.png"), 1));
     }
 }

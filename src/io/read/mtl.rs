@@ -6,20 +6,22 @@
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
+use std::sync::Arc;
 
 use serde_json::{Value, json};
 
 use super::ReadError;
 use super::materials::reason;
 use super::mtl_map::{Map, Pictures};
+use super::mtl_pack::Packing;
 use super::note::{Note, add_note};
 use super::text::{as_bytes_of_ascii, lines, shown, split_statement};
-use crate::mesh::{Material, position};
+use crate::mesh::{Material, Texture, position};
 
 /// Statements that say something which glTF has no place for.
-const LEFT: [&str; 20] = [
+const LEFT: [&str; 17] = [
     "Pc", "Pcr", "Ps", "Tf", "aniso", "anisor", "decal", "disp", "map_Ka", "map_Ks", "map_Ns",
-    "map_ORM", "map_Pm", "map_Pr", "map_Ps", "map_RMA", "map_Tr", "map_d", "map_disp", "refl",
+    "map_ORM", "map_Ps", "map_RMA", "map_Tr", "map_disp", "refl",
 ];
 /// Names of maps of bumps.
 const BUMPS: [&str; 2] = ["map_Bump", "bump"];
@@ -123,6 +125,13 @@ impl Entry {
         let name = shown(&self.name);
         let mut left = self.left();
         let mut textures = vec![];
+        let mut pack = |packing: Packing| {
+            let (texture, map, are_in) = self.pack(packing, folder, pictures, &mut left, notes)?;
+            Some((texture_info(&mut textures, &texture, &map), are_in))
+        };
+        let packed_color = pack(Packing::Opacity);
+        let gloss_map = pack(Packing::Gloss);
+        let [rough_map, metal_map] = gloss_map.as_ref().map_or([false; 2], |(_, are_in)| *are_in);
         let mut slot = |statement: &str, map: &Map, is_bump: bool, notes: &mut Vec<Note>| {
             let unread = map.unread.iter();
             left.extend(unread.map(|option| format!("{statement} {option}")));
@@ -131,11 +140,7 @@ impl Entry {
                 left.push(format!("{statement} (heights)"));
                 return None;
             }
-            let mut info = json!({ "index": position(&mut textures, &texture) });
-            if let Some(transform) = map.transform() {
-                info["extensions"] = json!({ "KHR_texture_transform": transform });
-            }
-            Some(info)
+            Some(texture_info(&mut textures, &texture, map))
         };
         let base_color = self.map("map_Kd");
         // Tr, the transparency, is the other way to write d.
@@ -144,15 +149,29 @@ impl Entry {
         let [red, green, blue] = self.color("Kd").unwrap_or([1.0; 3]);
         let gloss = self.number("Pr").map(|rough| rough.clamp(0.0, 1.0));
         let gloss = gloss.or(self.number("Ns").map(roughness));
+        let metal = self.number("Pm").map(|metal| metal.clamp(0.0, 1.0));
+        // A map is multiplied by its number; zero, which programs write where they have nothing to say, would hide it.
+        let factor = |number: Option<f64>, has_map: bool, otherwise: f64| match number {
+            Some(number) if number > 0.0 || !has_map => number,
+            None if !has_map => otherwise,
+            _ => 1.0,
+        };
         let mut surface = json!({
             "baseColorFactor": [red.clamp(0.0, 1.0), green.clamp(0.0, 1.0), blue.clamp(0.0, 1.0), opacity],
-            "metallicFactor": self.number("Pm").unwrap_or(0.0).clamp(0.0, 1.0),
-            "roughnessFactor": gloss.unwrap_or(MATT),
+            "metallicFactor": factor(metal, metal_map, 0.0),
+            "roughnessFactor": factor(gloss, rough_map, MATT),
         });
-        let base_color = base_color.and_then(|map| slot("map_Kd", &map, false, notes));
+        let has_opacity = packed_color.is_some();
+        let base_color = match packed_color {
+            Some((packed, _)) => Some(packed),
+            None => base_color.and_then(|map| slot("map_Kd", &map, false, notes)),
+        };
         let has_picture = base_color.is_some();
         if let Some(info) = base_color {
             surface["baseColorTexture"] = info;
+        }
+        if let Some((info, _)) = gloss_map {
+            surface["metallicRoughnessTexture"] = info;
         }
         // OBJ says nothing about sides, and viewers of it draw both.
         let mut properties = json!({
@@ -160,7 +179,7 @@ impl Entry {
             "pbrMetallicRoughness": surface,
             "doubleSided": true,
         });
-        if opacity < 1.0 || (has_picture && self.is_base_color("map_d")) {
+        if opacity < 1.0 || has_opacity || (has_picture && self.is_base_color("map_d")) {
             properties["alphaMode"] = "BLEND".into();
         }
         if let Some(map) = self.map("norm") {
@@ -192,6 +211,48 @@ impl Entry {
             place: format!("material {name:?}"),
             problem,
         })
+    }
+
+    /// Two maps as one texture, and how it is laid.
+    fn pack(
+        &self,
+        packing: Packing,
+        folder: &Path,
+        pictures: &mut Pictures,
+        left: &mut Vec<String>,
+        notes: &mut Vec<Note>,
+    ) -> Option<(Arc<Texture>, Map, [bool; 2])> {
+        let [first, second] = packing.statements();
+        let mut maps = [self.map(first), self.map(second)];
+        let needs_second = packing == Packing::Opacity;
+        // A picture of the base colour that is named again has the opacity already.
+        if needs_second && (maps[1].is_none() || self.is_base_color(second)) {
+            return None;
+        }
+        if let [Some(one), Some(other)] = &maps
+            && !one.is_laid_as(other)
+        {
+            left.push(format!("{second} (laid in another way than {first})"));
+            maps[1] = None;
+            if needs_second {
+                return None;
+            }
+        }
+        match pictures.packed(packing, maps.each_ref().map(Option::as_ref), folder, notes) {
+            Ok(texture) => {
+                let (texture, are_in) = texture?;
+                for (map, statement) in maps.iter().zip([first, second]) {
+                    let unread = map.iter().flat_map(|map| &map.unread);
+                    left.extend(unread.map(|option| format!("{statement} {option}")));
+                }
+                Some((texture, maps.into_iter().flatten().next()?, are_in))
+            }
+            Err(reason) => {
+                let statement = if maps[1].is_some() { second } else { first };
+                left.push(format!("{statement} ({reason})"));
+                None
+            }
+        }
     }
 
     /// Light of its own: above 1 only `KHR_materials_emissive_strength` can say it.
@@ -231,9 +292,7 @@ impl Entry {
                 let rest = self.rest(statement);
                 rest.is_some_and(|rest| !says_nothing(statement, rest))
             })
-            .filter(|statement| {
-                !(["map_d", "map_Ka"].contains(statement) && self.is_base_color(statement))
-            })
+            .filter(|statement| !(**statement == "map_Ka" && self.is_base_color(statement)))
             .map(|statement| (*statement).to_owned())
             .collect()
     }
@@ -271,6 +330,15 @@ impl Entry {
     fn color(&self, statement: &str) -> Option<[f64; 3]> {
         color(self.rest(statement)?)
     }
+}
+
+/// A `textureInfo` of glTF.
+fn texture_info(textures: &mut Vec<Arc<Texture>>, texture: &Arc<Texture>, map: &Map) -> Value {
+    let mut info = json!({ "index": position(textures, texture) });
+    if let Some(transform) = map.transform() {
+        info["extensions"] = json!({ "KHR_texture_transform": transform });
+    }
+    info
 }
 
 /// The first number, behind the option that `d` can have.
@@ -378,7 +446,10 @@ mod tests {
         );
         assert_eq!(notes.len(), 2, "{notes:?}");
         assert!(notes[0].starts_with("image \"a.png\" dropped"));
-        assert_eq!(notes[1], "material \"a\": Pc, map_d not carried over");
+        assert_eq!(
+            notes[1],
+            "material \"a\": Pc, map_d (laid in another way than map_Kd) not carried over"
+        );
     }
 
     #[test]

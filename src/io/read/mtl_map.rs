@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::find::{find, slashed};
 use super::materials::reason;
+use super::mtl_pack::Key;
 use super::note::{Note, add_note};
 use super::picture;
 use super::text::unquoted;
@@ -28,7 +29,7 @@ pub(super) struct Map {
     /// How much bumps are exaggerated.
     pub(super) strength: f64,
     /// Whether the picture ends at its edge.
-    clamped: bool,
+    pub(super) clamped: bool,
     /// Options that would change the picture and are not followed.
     pub(super) unread: Vec<String>,
 }
@@ -94,6 +95,18 @@ impl Map {
         let changes = self.scale != [1.0; 2] || offset != [0.0; 2];
         changes.then(|| json!({ "offset": offset, "scale": self.scale }))
     }
+
+    /// The `sampler` of glTF that a texture of the picture needs.
+    pub(super) fn sampler(&self) -> Option<Value> {
+        self.clamped
+            .then(|| json!({ "wrapS": CLAMP, "wrapT": CLAMP }))
+    }
+
+    /// Whether two pictures lie in the same way on a surface.
+    pub(super) fn is_laid_as(&self, other: &Self) -> bool {
+        let way = |map: &Self| (map.scale, map.offset, map.clamped);
+        way(self) == way(other)
+    }
 }
 
 /// The textures of an OBJ file, each made once and shared.
@@ -103,6 +116,8 @@ pub(super) struct Pictures<'a> {
     images: HashMap<PathBuf, Option<Arc<Image>>>,
     /// By file and whether it ends at its edge.
     textures: HashMap<(PathBuf, bool), Arc<Texture>>,
+    /// Those made of two pictures, or why there is none.
+    pub(super) packed: HashMap<Key, Result<Arc<Texture>, String>>,
 }
 
 impl<'a> Pictures<'a> {
@@ -111,6 +126,7 @@ impl<'a> Pictures<'a> {
             files,
             images: HashMap::new(),
             textures: HashMap::new(),
+            packed: HashMap::new(),
         }
     }
 
@@ -121,7 +137,20 @@ impl<'a> Pictures<'a> {
         folder: &Path,
         notes: &mut Vec<Note>,
     ) -> Option<Arc<Texture>> {
-        let path = find(folder, &map.file, notes);
+        let (path, image) = self.image(map, folder, notes)?;
+        let texture = self.textures.entry((path, map.clamped));
+        let texture = texture.or_insert_with(|| Arc::new(Texture::new(image, map.sampler())));
+        Some(texture.clone())
+    }
+
+    /// The picture that a map names, and its path.
+    pub(super) fn image(
+        &mut self,
+        map: &Map,
+        folder: &Path,
+        notes: &mut Vec<Note>,
+    ) -> Option<(PathBuf, Arc<Image>)> {
+        let path = find(self.files, folder, &map.file, notes);
         if !self.images.contains_key(&path) {
             let image = format!("{:?}", map.file);
             let read = match self.read(&path, &map.file) {
@@ -139,16 +168,7 @@ impl<'a> Pictures<'a> {
             self.images.insert(path.clone(), read);
         }
         let image = self.images.get(&path)?.clone()?;
-        let key = (path, map.clamped);
-        let sampler = map
-            .clamped
-            .then(|| json!({ "wrapS": CLAMP, "wrapT": CLAMP }));
-        let texture = self.textures.entry(key);
-        Some(
-            texture
-                .or_insert_with(|| Arc::new(Texture::new(image, sampler)))
-                .clone(),
-        )
+        Some((path, image))
     }
 
     /// A picture, and the name of the format that it had, if that was another; or why there is none.

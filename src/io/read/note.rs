@@ -226,6 +226,11 @@ pub enum Note {
         /// Bytes that are left of each at most.
         limit: usize,
     },
+    /// A picture made of several of different sizes.
+    ImageScaled {
+        /// Which one.
+        image: String,
+    },
     /// A material that no library defines.
     UnknownMaterial {
         /// Its name.
@@ -383,6 +388,12 @@ impl fmt::Display for Note {
             Self::Image { image, reason } => write!(f, "image {image} dropped: {reason}"),
             Self::ImageConverted { image, format } => {
                 write!(f, "image {image} made into PNG from {format}")
+            }
+            Self::ImageScaled { image } => {
+                write!(
+                    f,
+                    "image {image} made of pictures of different sizes: scaled to the larger one"
+                )
             }
             Self::MaterialLibrary { path, reason } => {
                 write!(f, "material library {path:?} skipped: {reason}")

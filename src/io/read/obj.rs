@@ -15,6 +15,7 @@ use super::names::tell_apart;
 use super::normals::replace_zero_normals;
 use super::note::Note;
 use super::obj_lines::{Faces, Statements, read_statements};
+use super::obj_plain::read_plain;
 use super::polygon::triangulate;
 use super::text::{shown, unquoted};
 use super::uri::Folder;
@@ -32,7 +33,19 @@ pub(super) fn read_obj_bytes(
     folder: Folder,
     default_name: &str,
 ) -> Result<(Model, Findings), ReadError> {
-    let mut file = read_statements(bytes)?;
+    let file = match read_plain(bytes) {
+        Some(file) => file,
+        None => read_statements(bytes)?,
+    };
+    model_of(file, folder, default_name)
+}
+
+/// The model that statements make.
+pub(super) fn model_of(
+    mut file: Statements,
+    folder: Folder,
+    default_name: &str,
+) -> Result<(Model, Findings), ReadError> {
     let mut notes = vec![];
     file.note(&mut notes);
     let mut libraries = Libraries::new(&folder, notes);
@@ -100,9 +113,10 @@ impl<'a> Libraries<'a> {
 
     /// Reads the libraries that one `mtllib` names: one whose name may have spaces, or several.
     fn load(&mut self, names: &str) -> Result<(), ReadError> {
-        let folder = self.pictures.files.path();
+        let files = self.pictures.files;
         let whole = unquoted(names);
-        if folder.join(slashed(whole)).exists() {
+        let as_named = files.path().join(slashed(whole));
+        if files.place_of(&as_named).is_some() {
             return self.load_one(whole);
         }
         let words = || names.split_ascii_whitespace().map(unquoted);
@@ -114,9 +128,10 @@ impl<'a> Libraries<'a> {
     }
 
     fn load_one(&mut self, name: &str) -> Result<(), ReadError> {
-        let path = find(self.pictures.files.path(), name, &mut self.notes);
+        let files = self.pictures.files;
+        let path = find(files, files.path(), name, &mut self.notes);
         // One file can be named in many ways.
-        let file = path.canonicalize().unwrap_or_else(|_| path.clone());
+        let file = files.place_of(&path).unwrap_or_else(|| path.clone());
         if !self.known.insert(file) {
             return Ok(());
         }
@@ -167,9 +182,9 @@ fn part_names(
     file: &Statements,
     notes: &mut Vec<Note>,
 ) -> Vec<String> {
-    let mut groups: HashMap<&[u8], Vec<usize>> = HashMap::new();
+    let mut groups: HashMap<u32, Vec<usize>> = HashMap::new();
     for (i, part) in parts.iter().enumerate() {
-        groups.entry(&part.name).or_default().push(i);
+        groups.entry(part.name).or_default().push(i);
     }
     let mut count = 0;
     let mut cut = |name: &str| {
@@ -182,7 +197,7 @@ fn part_names(
     };
     let mut names = vec![String::new(); parts.len()];
     for (name, members) in groups {
-        let name = match name {
+        let name = match &file.names.all[name as usize][..] {
             b"" => default_name.to_owned(),
             name => cut(&shown(name)),
         };

@@ -8,6 +8,7 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
@@ -33,12 +34,13 @@ pub(super) struct Statements {
     pub(super) libraries: Names,
     /// How many faces had fewer than three corners.
     pub(super) empty_faces: usize,
-    /// Names of groups and objects.
-    names: Names,
+    /// Of groups and objects.
+    pub(super) names: Names,
     /// Of objects, which may have groups of equal names.
     object: u32,
     name: u32,
-    material: Option<u32>,
+    /// Of what follows now.
+    pub(super) material: Option<u32>,
     /// The part of each object, name and material.
     known: HashMap<(u32, u32, Option<u32>), usize>,
     points_and_lines: usize,
@@ -50,8 +52,8 @@ pub(super) struct Statements {
 
 /// The faces of one name and material.
 pub(super) struct Faces {
-    /// Of the group or object, in the bytes of the file.
-    pub(super) name: Vec<u8>,
+    /// Which of the file's names of groups and objects: a file of many parts may have one long name for all.
+    pub(super) name: u32,
     /// Which of the file's materials.
     pub(super) material: Option<u32>,
     /// `v`, `vt` and `vn` of all corners, from 1, or 0 where there is none.
@@ -63,8 +65,8 @@ pub(super) struct Faces {
 /// Different names, in the order of their first use.
 #[derive(Default)]
 pub(super) struct Names {
-    numbers: HashMap<Vec<u8>, u32>,
-    pub(super) all: Vec<Vec<u8>>,
+    numbers: HashMap<Arc<[u8]>, u32>,
+    pub(super) all: Vec<Arc<[u8]>>,
 }
 
 impl Names {
@@ -73,8 +75,9 @@ impl Names {
             return number;
         }
         let number = self.all.len() as u32;
-        self.all.push(name.to_vec());
-        self.numbers.insert(name.to_vec(), number);
+        let name: Arc<[u8]> = name.into();
+        self.all.push(name.clone());
+        self.numbers.insert(name, number);
         number
     }
 }
@@ -96,8 +99,7 @@ impl Oddities {
 pub(super) fn read_statements(file: &[u8]) -> Result<Statements, ReadError> {
     let file = as_bytes_of_ascii(file);
     let mut statements = Statements::default();
-    let none = statements.names.number(b"");
-    (statements.object, statements.name) = (none, none);
+    statements.begin();
     let mut lines = lines(&file).enumerate();
     while let Some((index, line)) = lines.next() {
         let (statement, _) = split_statement(line);
@@ -134,14 +136,15 @@ pub(super) fn read_statements(file: &[u8]) -> Result<Statements, ReadError> {
 }
 
 impl Statements {
-    fn add(&mut self, statement: &[u8], rest: &[u8], line: usize) -> Result<(), ObjProblem> {
+    /// Sets what holds before the first statement: an object and a group without a name.
+    pub(super) fn begin(&mut self) {
+        let none = self.names.number(b"");
+        (self.object, self.name) = (none, none);
+    }
+
+    /// Takes in a statement that names what follows, or a library.
+    pub(super) fn add_name(&mut self, statement: &[u8], rest: &[u8]) {
         match statement {
-            b"v" => self.add_vertex(rest, line)?,
-            b"vt" => self.add_texture_coordinate(rest, line),
-            b"vn" => self.add_normal(rest, line),
-            b"f" | b"fo" => self.add_face(rest, line)?,
-            b"p" | b"l" => self.points_and_lines += 1,
-            b"curv" | b"curv2" | b"surf" => self.curves += 1,
             b"usemtl" if !rest.is_empty() => self.material = Some(self.materials.number(rest)),
             b"mtllib" if !rest.is_empty() => _ = self.libraries.number(rest),
             b"o" => {
@@ -150,6 +153,18 @@ impl Statements {
             }
             b"g" => self.name = self.names.number(rest),
             _ => {}
+        }
+    }
+
+    fn add(&mut self, statement: &[u8], rest: &[u8], line: usize) -> Result<(), ObjProblem> {
+        match statement {
+            b"v" => self.add_vertex(rest, line)?,
+            b"vt" => self.add_texture_coordinate(rest, line),
+            b"vn" => self.add_normal(rest, line),
+            b"f" | b"fo" => self.add_face(rest, line)?,
+            b"p" | b"l" => self.points_and_lines += 1,
+            b"curv" | b"curv2" | b"surf" => self.curves += 1,
+            _ => self.add_name(statement, rest),
         }
         Ok(())
     }
@@ -247,11 +262,11 @@ impl Statements {
     }
 
     /// The part that faces go to now.
-    fn part(&mut self) -> usize {
+    pub(super) fn part(&mut self) -> usize {
         let key = (self.object, self.name, self.material);
         *self.known.entry(key).or_insert_with(|| {
             self.parts.push(Faces {
-                name: self.names.all[self.name as usize].clone(),
+                name: self.name,
                 material: self.material,
                 corners: vec![],
                 arities: vec![],
@@ -411,8 +426,10 @@ mod tests {
         let (file, _) = read(
             "# c \\\nv 0 0 0 # a\nv 0 0 1# b\nusemtl #f00\ng a #1\nf 1 2 1 # c\nusemtl #0f0\nf 1 2 1",
         );
-        assert_eq!(file.materials.all, [b"#f00", b"#0f0"]);
-        assert_eq!(file.parts[0].name, b"a #1");
+        let names = file.materials.all.iter().map(|name| &name[..]);
+        assert_eq!(names.collect::<Vec<_>>(), [b"#f00", b"#0f0"]);
+        let name = &file.names.all[file.parts[0].name as usize];
+        assert_eq!(name[..], b"a #1"[..]);
         assert_eq!(file.parts.len(), 2);
     }
 
@@ -458,7 +475,10 @@ mod tests {
         );
         let parts = file.parts.iter();
         let parts: Vec<_> = parts
-            .map(|part| (&part.name[..], part.material, part.arities.len()))
+            .map(|part| {
+                let name = &file.names.all[part.name as usize];
+                (&name[..], part.material, part.arities.len())
+            })
             .collect();
         let expected: [(&[u8], Option<u32>, usize); 5] = [
             (b"", Some(0), 2),

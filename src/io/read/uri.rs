@@ -82,6 +82,13 @@ impl<'a> Folder<'a> {
         self.path
     }
 
+    /// Where an ordinary file lies that may be read, with all links followed; of others nothing is told, not even
+    /// whether they exist.
+    pub(super) fn place_of(&self, path: &Path) -> Option<PathBuf> {
+        let place = self.reach.resolve(path).ok()?;
+        place.is_file().then_some(place)
+    }
+
     /// The bytes of a file, at most `limit` of them.
     pub(super) fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, ReadError> {
         self.open(path, limit)?.into_vec()
