@@ -39,6 +39,9 @@ impl Packing {
 /// What a packed texture is made of: the files and whether it ends at its edge.
 pub(super) type Key = (Packing, [Option<PathBuf>; 2], bool);
 
+/// A texture of two maps, and which of them are in it.
+pub(super) type Packed = (Arc<Texture>, [bool; 2]);
+
 impl Pictures<'_> {
     /// The texture of two maps that are laid in the same way, and which of them are in it; none where the pictures that
     /// need one are not to be had; or why they cannot be put together.
@@ -48,7 +51,7 @@ impl Pictures<'_> {
         maps: [Option<&Map>; 2],
         folder: &Path,
         notes: &mut Vec<Note>,
-    ) -> Result<Option<(Arc<Texture>, [bool; 2])>, String> {
+    ) -> Result<Option<Packed>, String> {
         let [first, second] = maps.map(|map| {
             let found = map.and_then(|map| self.image(map, folder, notes));
             found.unzip()
