@@ -354,7 +354,7 @@ mod tests {
             let (x, z) = (f64::from(k) % side, (f64::from(k) / side).floor());
             json!({
                 "name": format!("cube{k}"),
-                "shape": { "box": { "size": [1, 1, 1] } },
+                "shape": { "box": { "size": [1, 1, 1], "resolution": 1 } },
                 "position": [3.0 * (x - side / 2.0), -6, -6.0 - 3.0 * z],
                 "velocity": { "beta": beta(k), "direction": [1, 0, 0] },
             })
@@ -393,10 +393,9 @@ mod tests {
     /// Parts of one object: far fewer boxes than parts.
     #[test]
     fn a_ray_asks_few_of_many_parts() {
-        let model = Shape::cuboid([1.0; 3])
-            .unwrap()
-            .model(&Appearance::default())
-            .unwrap();
+        let cube = Shape::cuboid([1.0; 3]).unwrap();
+        let cube = cube.with_resolution(1).unwrap();
+        let model = cube.model(&Appearance::default()).unwrap();
         let object =
             crate::scene::Object::new("cubes", Source::Model(std::sync::Arc::new(model.clone())));
         let mut scenery = Scenery::new();
