@@ -407,3 +407,19 @@ fn what_an_observer_in_a_plane_asks_for_is_foretold() {
         }
     }
 }
+
+/// The search for a looser tolerance has an end, and that end was given out as a tolerance that fits.
+#[test]
+fn a_tolerance_that_was_not_found_is_not_advised() {
+    let workplace = Workplace::new();
+    for tolerance in ["5e-324", "deg:4e-308"] {
+        let line =
+            format!("check --example cube --tolerance {tolerance} --max-triangles 2000 --beta 0.9");
+        let run = workplace.run(&line);
+        assert_eq!(run.status, 1, "{run}");
+        assert!(
+            run.stderr.contains("no tolerance near it would fit"),
+            "{run}"
+        );
+    }
+}

@@ -141,8 +141,10 @@ impl AccuracyArgs {
             prediction.reachable &= *times == 1.0;
         }
         let advice = match &loosened[..] {
-            _ if predicted(&predictions) > self.max_triangles() as f64 => {
-                "no tolerance would fit".to_owned()
+            _ if loosening.contains(&f64::INFINITY)
+                || predicted(&predictions) > self.max_triangles() as f64 =>
+            {
+                "no tolerance near it would fit".to_owned()
             }
             [(_, fitting)] if loosening.len() == 1 => format!("--tolerance {fitting} would fit"),
             several => {

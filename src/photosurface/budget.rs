@@ -72,7 +72,8 @@ impl Stage {
     }
 
     /// The same stage with looser aims, so that all its photosurfaces together have at most `most` triangles; and for
-    /// each object how many times looser, 1 where it is left alone.
+    /// each object how many times looser, 1 where it is left alone and infinity where no aim that was tried is loose
+    /// enough.
     ///
     /// Objects that need less than an equal share of what is left by the others get what they need; the others
     /// share the rest, and within each the largest gaps are closed first. Certificates are still against the
@@ -99,7 +100,11 @@ impl Stage {
             }
             left = (left - need).max(0.0);
         }
-        let loosening = self.objects.iter().map(|placed| placed.loosening).collect();
+        let loosening = self.objects.iter().map(|placed| match placed.loosening {
+            MAX_LOOSENING.. => f64::INFINITY,
+            times => times,
+        });
+        let loosening = loosening.collect();
         (self.granting(wanted, most), loosening)
     }
 
