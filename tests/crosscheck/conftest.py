@@ -3,6 +3,7 @@
 import json
 import os
 import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -58,12 +59,18 @@ def export(run, tmp_path_factory):
         key = json.dumps([source if isinstance(source, dict) else str(source), flags, to])
         if key not in done:
             directory = tmp_path_factory.mktemp("export")
+            allowed = []
             if isinstance(source, dict):
+                # The scene lies in a directory of its own, its meshes do not.
+                meshes = [spec["file"] for spec in source["objects"] if "file" in spec]
+                allowed = [word for mesh in meshes for word in ("--allow-read", Path(mesh).parent)]
                 scene = directory / "scene.json"
                 scene.write_text(json.dumps(source))
                 source = scene
             report = directory / "report.json"
-            ended = run("export", source, *flags, "-o", directory / to, "--report", report)
+            ended = run(
+                "export", source, *flags, *allowed, "-o", directory / to, "--report", report
+            )
             done[key] = directory / to, ended
             (directory / "messages.txt").write_bytes(ended.stderr)
         path, ended = done[key]

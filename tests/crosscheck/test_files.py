@@ -70,7 +70,9 @@ def test_the_same_bytes_every_time(scene, export, photosurface, tmp_path):
     path = export(scene)
     for threads in (1, 3):
         again = tmp_path / f"{threads}.glb"
-        photosurface("export", path.parent / "scene.json", "-o", again, threads=threads)
+        photosurface(
+                "export", path.parent / "scene.json", "-o", again, "--allow-read", tmp_path, threads=threads
+            )
         assert again.read_bytes() == path.read_bytes()
 
 
