@@ -200,18 +200,12 @@ impl<'a> Plan<'a> {
         let made = |(((name, part), seen), refined): (Before<'a>, Option<Refined>)| {
             let mesh = part.mesh();
             let Some(refined) = refined else {
-                let observer = self.view.observer_rest();
-                let found = survey(mesh, observer, f64::INFINITY, &limits.whole);
-                let counts = Counts {
-                    triangles_in: mesh.triangles().len(),
-                    triangles_out: mesh.triangles().len(),
-                    minimum_triangles: found.minimum_triangles,
-                };
+                let (gap, counts) = self.survey_of_unrefined(&limits, mesh);
                 return Unproven {
                     name,
                     part,
                     seen,
-                    gap: found.gap,
+                    gap,
                     counts,
                 };
             };
@@ -289,6 +283,12 @@ impl<'a> Plan<'a> {
         seen: &Seen,
         around: Option<(DVec3, DVec3)>,
     ) -> Certificate {
+        let (gap, counts) = self.survey_of_unrefined(limits, mesh);
+        self.certificate(limits, mesh, seen, around, gap, counts)
+    }
+
+    /// The largest gap `e` of a mesh that stays what it is, at rest, and its numbers of triangles.
+    fn survey_of_unrefined(&self, limits: &Limits, mesh: &Mesh) -> (f64, Counts) {
         let observer = self.view.observer_rest();
         let found = survey(mesh, observer, f64::INFINITY, &limits.whole);
         let counts = Counts {
@@ -296,7 +296,7 @@ impl<'a> Plan<'a> {
             triangles_out: mesh.triangles().len(),
             minimum_triangles: found.minimum_triangles,
         };
-        self.certificate(limits, mesh, seen, around, found.gap, counts)
+        (found.gap, counts)
     }
 
     /// The certificate of a mesh, refined or not, with the largest gap `e`.
