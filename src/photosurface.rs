@@ -137,6 +137,8 @@ struct Shaped {
     appearance: Appearance,
     model_to_rest: DAffine3,
     largest_scale: f64,
+    /// Of its facets as they were placed from the curved surface, at rest.
+    deviation: f64,
 }
 
 impl Stage {
@@ -333,6 +335,7 @@ impl Shaped {
                 appearance: *appearance,
                 model_to_rest: object.model_to_rest(),
                 largest_scale: object.scale.max_element(),
+                deviation: shape.deviation() * object.scale.max_element(),
             }),
             _ => None,
         }

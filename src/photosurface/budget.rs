@@ -9,7 +9,7 @@ use crate::mesh::{Mesh, Part};
 use crate::tessellate::shares;
 
 /// Room that a budget leaves for predictions, which are good to about a half (`tests/cli.rs`).
-const PREDICTION_ROOM: f64 = 1.6;
+const PREDICTION_ROOM: f64 = 1.2;
 
 /// Of more triangles than this, all steps together, a prediction looks at as many, evenly spread, but at each step at
 /// as many as [`LEAST_LOOKED_AT`] at least.
@@ -23,7 +23,7 @@ const STEPS_LOOKED_AT: usize = 32;
 const MAX_LOOSENING: f64 = 1e300;
 
 /// A share of the budget is used up to this part at least, if so many steps are enough to come near to it.
-const USED: f64 = 0.7;
+const USED: f64 = 0.9;
 const MAX_HALVINGS: usize = 12;
 
 /// Where even the loosest aim takes more than there is, so many times as much is spent: the last few per cent would

@@ -450,10 +450,7 @@ impl<'a> Plan<'a> {
     /// The place of a facet nearest to the observer, or one nearer than any of the curved surface that it stands for.
     fn nearest(&self, offsets: [DVec3; 3]) -> DVec3 {
         let nearest = nearest_point(offsets);
-        let deviation = match &self.placed.shaped {
-            Some(shaped) => shaped.shape.deviation() * shaped.largest_scale,
-            None => 0.0,
-        };
+        let deviation = (self.placed.shaped.as_ref()).map_or(0.0, |shaped| shaped.deviation);
         nearest * (1.0 - deviation / nearest.length()).max(0.0)
     }
 

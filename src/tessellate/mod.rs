@@ -18,6 +18,7 @@ mod edges;
 mod gap;
 mod minimum;
 mod nearest;
+mod outline;
 mod queue;
 mod refine;
 mod room;

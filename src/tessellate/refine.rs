@@ -3,27 +3,14 @@
 use glam::{DVec3, DVec4, Vec2, Vec4};
 use rayon::prelude::*;
 
+use super::Allowance;
 use super::edge::{EDGE_SHARE, point_between};
-use super::edges::{Count, Edges, Origin, canonical, divided_edges, sides};
-use super::minimum::pieces_inside;
+use super::edges::{Edges, Origin, canonical, sides};
+use super::outline::{Divided, Need, Outline};
 use super::room::Room;
 use super::sky::{Corner, Grant, Pieces, divide};
 use super::survey::{Survey, survey};
-use super::{Allowance, minimum_triangles, triangle_gap};
 use crate::mesh::Mesh;
-
-/// A single triangle is never given more points than this many times what theory asks for, and a few.
-const MOST_POINTS: f64 = 16.0;
-
-/// More points than this inside one triangle are a tolerance that cannot be meant: behind a fast observer the fewest
-/// triangles that theory allows go with `gamma`.
-const MAX_POINTS: f64 = 4_194_304.0;
-
-/// Where a limit leaves too little for what is allowed, so many times as much is; then twice that factor, and so on.
-const LOOSER: f64 = 4.0;
-
-/// Where that has gone so far, edges stay whole.
-const LOOSEST: f64 = 1e100;
 
 /// A mesh refined, and how well.
 #[derive(Clone, Debug)]
@@ -124,141 +111,6 @@ pub(crate) fn refine(
             refined
         })
         .collect()
-}
-
-/// What is decided before any triangle is looked into.
-struct Outline {
-    /// What is aimed at: so many times what is allowed.
-    looser: f64,
-    allowance: Allowance,
-    /// Of each mesh.
-    edges: Vec<Edges>,
-    /// Of each of the triangles of each mesh that were looked at.
-    needs: Vec<Vec<Need>>,
-    /// How many triangles more there may be inside.
-    more: u64,
-}
-
-impl Outline {
-    /// With the allowance, or one so much larger that edges and what is foreseen inside are within the limit.
-    fn within(
-        meshes: &[&Mesh],
-        found: &[Survey],
-        observer: DVec3,
-        allowance: &Allowance,
-        most_more: u64,
-    ) -> Self {
-        let (mut looser, mut step) = (1.0, LOOSER);
-        loop {
-            let aimed = match looser {
-                1.0 => *allowance,
-                _ if looser > LOOSEST => Allowance::Everywhere(f64::INFINITY),
-                _ => allowance.times(looser),
-            };
-            let more = Count::up_to(most_more);
-            let edges: Option<Vec<Edges>> = meshes
-                .par_iter()
-                .zip(found)
-                .map(|(mesh, found)| divided_edges(mesh, &found.above, observer, &aimed, &more))
-                .collect();
-            if let Some(edges) = edges {
-                let needs = meshes.par_iter().zip(found).zip(&edges);
-                let needs: Vec<Vec<Need>> = needs
-                    .map(|((mesh, found), edges)| {
-                        let corners = found
-                            .above
-                            .par_iter()
-                            .map(|&index| mesh.triangles()[index as usize]);
-                        let need =
-                            |corners| Need::of(corners, mesh.positions(), observer, edges, &aimed);
-                        corners.map(need).collect()
-                    })
-                    .collect();
-                let inside = needs.iter().flatten().map(|need| need.inside);
-                if inside.sum::<f64>() <= more.left() as f64 || looser > LOOSEST {
-                    return Self {
-                        looser,
-                        allowance: aimed,
-                        edges,
-                        needs,
-                        more: more.left(),
-                    };
-                }
-            }
-            looser *= step;
-            step *= 2.0;
-        }
-    }
-
-    /// The triangles of all meshes that have to be divided, in their order.
-    fn divided(&self, found: &[Survey]) -> Vec<Divided> {
-        let meshes = self.needs.iter().zip(found).enumerate();
-        meshes
-            .flat_map(|(mesh, (needs, found))| {
-                let looked_at = needs.iter().zip(&found.above);
-                let divided = looked_at.filter(|(need, _)| need.is_divided);
-                divided.map(move |(&need, &index)| Divided { mesh, index, need })
-            })
-            .collect()
-    }
-}
-
-/// A triangle that has to be divided.
-#[derive(Clone, Copy)]
-struct Divided {
-    mesh: usize,
-    index: u32,
-    need: Need,
-}
-
-/// What a triangle needs.
-#[derive(Clone, Copy)]
-struct Need {
-    /// Whether it has to be divided at all.
-    is_divided: bool,
-    /// Its gap as it is.
-    gap: f64,
-    /// The fewest triangles by theory.
-    minimum: f64,
-    /// About how many triangles more there will be of points inside.
-    inside: f64,
-}
-
-impl Need {
-    fn of(
-        corners: [u32; 3],
-        positions: &[DVec3],
-        observer: DVec3,
-        edges: &Edges,
-        allowance: &Allowance,
-    ) -> Self {
-        let offsets = corners.map(|corner| positions[corner as usize] - observer);
-        let [a, b, c] = offsets;
-        let gap = triangle_gap(a, b, c);
-        let fits = gap <= allowance.between(&offsets);
-        let is_cut = |side: [u32; 2]| edges.divisions.contains_key(&canonical(side, positions));
-        let is_divided = !fits || sides(corners).into_iter().any(is_cut);
-        let minimum = match is_divided {
-            true => minimum_triangles(offsets, allowance),
-            false => 0.0,
-        };
-        let inside = match fits {
-            true => 0.0,
-            false => pieces_inside(offsets, minimum, allowance),
-        };
-        Self {
-            is_divided,
-            gap,
-            minimum,
-            inside,
-        }
-    }
-
-    /// Of points inside that are spent on it, even without any limit.
-    fn most_points(&self, boundary: usize) -> usize {
-        let most = MOST_POINTS * (self.minimum + boundary as f64) + 64.0;
-        most.min(MAX_POINTS) as usize
-    }
 }
 
 /// What a triangle is divided into.
@@ -475,5 +327,22 @@ mod tests {
             (area - 4.0).abs() < 1e-12,
             "the pieces cover the quad once: {area}"
         );
+    }
+
+    /// A quad under a tolerance that takes far more than there is.
+    #[test]
+    fn a_limit_holds_and_most_of_it_is_used() {
+        let positions = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let positions = positions.map(|(x, y)| DVec3::new(x, y, -0.5)).to_vec();
+        let mesh = Mesh::new(positions, vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+        for allowed in [1e-9, 1e-300] {
+            let allowance = Allowance::Everywhere(allowed);
+            for most_more in [50, 200, 1000, 5000, 20_000] {
+                let refined = refine(&[&mesh], DVec3::ZERO, &allowance, &allowance, most_more);
+                let more = refined[0].mesh.triangles().len() as u64 - 2;
+                let used = format!("{more} of {most_more} at {allowed:e}");
+                assert!(more <= most_more && 2 * more >= most_more, "{used}");
+            }
+        }
     }
 }
