@@ -2,6 +2,7 @@
 
 mod common;
 
+use std::collections::HashSet;
 use std::fs;
 use std::io::Cursor;
 use std::path::Path;
@@ -399,6 +400,14 @@ fn a_hundred_nodes_and_images_share_one_picture() {
             .iter()
             .all(|part| bytes(part) == bytes(&model.parts[0]))
     );
+    place.run("export a.gltf -o out.glb").success();
+    let written = glb_json(&place.read("out.glb"));
+    let images = written["images"].as_array().expect("images");
+    let views: HashSet<_> = images
+        .iter()
+        .map(|image| image["bufferView"].as_u64())
+        .collect();
+    assert_eq!((images.len(), views.len()), (100, 1));
 }
 
 /// The files of all pictures of a model together have a limit, parts of one another included.
