@@ -1,6 +1,7 @@
 //! The binary as users run it: exit status, clean stdout, every flag reaches its parameter, errors that help.
 
 use crate::common::command::{BALL, SQUARE, Workplace, glb_json, node_names};
+use crate::common::glb::Glb;
 use serde_json::Value;
 
 #[test]
@@ -453,18 +454,8 @@ fn a_large_file_is_what_comes_through_a_pipe_but_for_spaces() {
     let piped = workplace.run(&format!("{arguments} -")).success().stdout;
     let file = workplace.read("out.glb");
     let parts = |glb: &[u8]| {
-        let word = |at: usize| {
-            let bytes = glb[at..at + 4].try_into().expect("four bytes");
-            u32::from_le_bytes(bytes) as usize
-        };
-        let data = 20 + word(12);
-        assert_eq!(
-            (word(8), word(data)),
-            (glb.len(), glb.len() - data - 8),
-            "lengths are as said"
-        );
-        let json = glb[20..data].trim_ascii_end().to_vec();
-        (json, glb[data..].to_vec())
+        let glb = Glb::new(glb);
+        (glb.text, glb.binary)
     };
     assert!(piped.len() > 5_000_000, "more than waits in memory");
     assert!(file.len() > piped.len(), "there is room left");

@@ -8,6 +8,8 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
+use super::glb::Glb;
+
 /// A square of two triangles.
 pub(crate) const SQUARE: &str = "o square\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
 
@@ -191,9 +193,7 @@ impl fmt::Display for Run {
 
 /// The JSON of a GLB.
 pub(crate) fn glb_json(bytes: &[u8]) -> Value {
-    assert_eq!(&bytes[..4], b"glTF");
-    let length = u32::from_le_bytes(bytes[12..16].try_into().expect("four bytes")) as usize;
-    serde_json::from_slice(&bytes[20..20 + length]).expect("JSON")
+    Glb::new(bytes).json
 }
 
 /// The names of all nodes of a GLB, in order.

@@ -2,7 +2,7 @@
 
 pub(crate) mod alone;
 pub(crate) mod command;
-pub(crate) mod made_glb;
+pub(crate) mod glb;
 pub(crate) mod oracle;
 pub(crate) mod passing;
 pub(crate) mod refining;
@@ -82,6 +82,11 @@ impl Random {
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         let fraction = (self.next() >> 11) as f64 / (1u64 << 53) as f64;
         low + (high - low) * fraction
+    }
+
+    /// One of the whole numbers below `limit`.
+    pub(crate) fn below(&mut self, limit: usize) -> usize {
+        (self.next() % limit as u64) as usize
     }
 
     /// Even on the sphere, its length 1 but for rounding.

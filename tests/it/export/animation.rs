@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::common::Random;
 use crate::common::command::{Workplace, glb_json};
+use crate::common::glb::Glb;
 use photosurface::{Attributes, DVec3, Photosurface, Scene, Stage, View, Wanted, load_models};
 use serde_json::Value;
 
@@ -115,11 +116,6 @@ fn one_mesh_for_all_steps_is_no_finer_than_it_has_to_be() {
     }
 }
 
-struct File {
-    json: Value,
-    binary: Vec<u8>,
-}
-
 /// What one channel of the animation says.
 struct Track {
     node: usize,
@@ -129,42 +125,17 @@ struct Track {
     values: Vec<f32>,
 }
 
-impl File {
-    fn export(workplace: &Workplace, flags: &str) -> Self {
-        workplace.write("scene.json", SCENE);
-        workplace
-            .run(&format!(
-                "export scene.json -o out.glb --report report.json {flags}"
-            ))
-            .success();
-        let bytes = workplace.read("out.glb");
-        let json_length =
-            u32::from_le_bytes(bytes[12..16].try_into().expect("as glTF has it")) as usize;
-        Self {
-            json: glb_json(&bytes),
-            binary: bytes[28 + json_length..].to_vec(),
-        }
-    }
+fn export(workplace: &Workplace, flags: &str) -> Glb {
+    workplace.write("scene.json", SCENE);
+    workplace
+        .run(&format!(
+            "export scene.json -o out.glb --report report.json {flags}"
+        ))
+        .success();
+    Glb::new(&workplace.read("out.glb"))
+}
 
-    /// The numbers of an accessor, which all are `f32` one after the other.
-    fn numbers(&self, accessor: &Value) -> Vec<f32> {
-        let accessor = &self.json["accessors"][accessor.as_u64().expect("an index") as usize];
-        assert_eq!(accessor["componentType"], 5126);
-        let components = match accessor["type"].as_str() {
-            Some("SCALAR") => 1,
-            Some("VEC3") => 3,
-            other => panic!("{other:?}"),
-        };
-        let view = &self.json["bufferViews"]
-            [accessor["bufferView"].as_u64().expect("as glTF has it") as usize];
-        let start = view["byteOffset"].as_u64().unwrap_or(0) as usize;
-        let length = 4 * components * accessor["count"].as_u64().expect("as glTF has it") as usize;
-        let numbers = self.binary[start..start + length].chunks_exact(4);
-        numbers
-            .map(|b| f32::from_le_bytes(b.try_into().expect("as glTF has it")))
-            .collect()
-    }
-
+impl Glb {
     fn tracks(&self) -> Vec<Track> {
         let animation = &self.json["animations"][0];
         let channels = animation["channels"].as_array().expect("channels").iter();
@@ -187,7 +158,7 @@ impl File {
 #[test]
 fn each_frame_shows_its_step_alone() {
     let workplace = Workplace::new();
-    let file = File::export(&workplace, "--animate --fps 10");
+    let file = export(&workplace, "--animate --fps 10");
     let nodes = file.json["nodes"].as_array().unwrap();
     assert_eq!(nodes.len(), 1 + 3 * 5);
     let tracks = file.tracks();
@@ -221,7 +192,7 @@ fn each_frame_shows_its_step_alone() {
         serde_json::json!([-3.0, -1.5, 0.0, 1.5, 3.0])
     );
     // Without time there is none, and the rest is the same.
-    let still = File::export(&workplace, "");
+    let still = export(&workplace, "");
     assert!(still.json.get("animations").is_none());
     assert_eq!(still.json["nodes"], file.json["nodes"]);
 }
@@ -230,7 +201,7 @@ fn each_frame_shows_its_step_alone() {
 #[test]
 fn morph_targets_add_up_to_each_step() {
     let workplace = Workplace::new();
-    let file = File::export(&workplace, "--animate=morph");
+    let file = export(&workplace, "--animate=morph");
     let nodes = file.json["nodes"].as_array().unwrap();
     let names: Vec<_> = nodes
         .iter()
@@ -303,7 +274,7 @@ fn morph_targets_add_up_to_each_step() {
 #[test]
 fn attributes_are_there_when_asked_for() {
     let workplace = Workplace::new();
-    let attributes = |file: &File| -> Vec<BTreeSet<String>> {
+    let attributes = |file: &Glb| -> Vec<BTreeSet<String>> {
         let meshes = file.json["meshes"].as_array().unwrap().iter();
         let names = |mesh: &Value| {
             let attributes = mesh["primitives"][0]["attributes"].as_object().unwrap();
@@ -315,9 +286,9 @@ fn attributes_are_there_when_asked_for() {
         };
         meshes.map(names).collect()
     };
-    let none = File::export(&workplace, "");
+    let none = export(&workplace, "");
     assert!(attributes(&none).iter().all(BTreeSet::is_empty));
-    let file = File::export(
+    let file = export(
         &workplace,
         "--attributes doppler,rest_position,emission_time",
     );

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::common::command::Workplace;
+use crate::common::glb::{Glb, pack};
 use crate::common::refining::model;
 use crate::common::{Random, cases};
 use photosurface::{
@@ -54,25 +55,20 @@ fn export(stage: Stage, subdivide: bool) -> Result<Vec<u8>, WriteError> {
 
 /// Every number of a GLB: those of all accessors with `f32`, and all of its JSON.
 fn assert_finite(bytes: &[u8], case: &str) {
-    let glb = gltf::binary::Glb::from_slice(bytes).expect("a GLB");
-    let json: serde_json::Value = serde_json::from_slice(&glb.json).expect("JSON");
+    let glb = Glb::new(bytes);
     // NaN and infinity are null in JSON.
-    let text = String::from_utf8_lossy(&glb.json);
     assert!(
-        !text.contains("null"),
-        "{case}: a number is missing in {text}"
+        !glb.text.contains("null"),
+        "{case}: a number is missing in {}",
+        glb.text
     );
-    let data = glb.bin.expect("a binary part");
     let mut numbers = 0;
-    for accessor in json["accessors"].as_array().expect("accessors") {
+    for accessor in glb.json["accessors"].as_array().expect("accessors") {
         if accessor["componentType"] != 5126 {
             continue;
         }
-        let view = &json["bufferViews"][accessor["bufferView"].as_u64().expect("one") as usize];
-        let start = view["byteOffset"].as_u64().unwrap_or(0) as usize;
-        let length = view["byteLength"].as_u64().expect("a length") as usize;
-        for number in data[start..start + length].chunks_exact(4) {
-            let number = f32::from_le_bytes(number.try_into().expect("four bytes"));
+        for &word in glb.view(&accessor["bufferView"]).as_chunks().0 {
+            let number = f32::from_le_bytes(word);
             assert!(number.is_finite(), "{case}: {number}");
             numbers += 1;
         }
@@ -312,16 +308,7 @@ fn glb(corners: &[[f32; 3]]) -> Vec<u8> {
         "bufferViews": [{ "buffer": 0, "byteLength": bytes.len() }],
         "buffers": [{ "byteLength": bytes.len() }],
     });
-    let glb = gltf::binary::Glb {
-        header: gltf::binary::Header {
-            magic: *b"glTF",
-            version: 2,
-            length: 0,
-        },
-        json: document.to_string().into_bytes().into(),
-        bin: Some(bytes.into()),
-    };
-    glb.to_vec().expect("small enough")
+    pack(&document, &bytes)
 }
 
 #[test]

@@ -6,6 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::common::glb::{Glb, index};
 use photosurface::{
     Export, Note, Object, Observer, Photosurface, Scene, Source, Stage, Wanted, read_model,
     write_glb,
@@ -18,29 +19,7 @@ fn fixture(name: &str) -> PathBuf {
         .join(name)
 }
 
-/// A GLB file, taken apart.
-struct Glb {
-    json: Value,
-    binary: Vec<u8>,
-}
-
 impl Glb {
-    fn new(bytes: &[u8]) -> Self {
-        let word =
-            |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("4")) as usize;
-        let json = &bytes[20..20 + word(12)];
-        Self {
-            json: serde_json::from_slice(json).expect("JSON"),
-            binary: bytes[28 + json.len()..].to_vec(),
-        }
-    }
-
-    fn view(&self, view: &Value) -> &[u8] {
-        let view = &self.json["bufferViews"][index(view)];
-        let start = index(view.get("byteOffset").unwrap_or(&json!(0)));
-        &self.binary[start..start + index(&view["byteLength"])]
-    }
-
     fn image(&self, image: &Value) -> Value {
         let mut image = self.json["images"][index(image)].clone();
         image["bufferView"] = self.view(&image["bufferView"]).into();
@@ -88,10 +67,6 @@ impl Glb {
         assert_eq!(accessor.get("byteOffset"), None, "{name}");
         self.view(&accessor["bufferView"])
     }
-}
-
-fn index(value: &Value) -> usize {
-    value.as_u64().expect("an index") as usize
 }
 
 /// A fixture as the program writes it, seen from rest, at two steps; and the notes.

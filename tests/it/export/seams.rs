@@ -3,7 +3,8 @@
 
 use std::collections::HashMap;
 
-use crate::common::command::{Workplace, glb_json};
+use crate::common::command::Workplace;
+use crate::common::glb::Glb;
 use serde_json::Value;
 
 /// A place as the bits of its coordinates.
@@ -28,14 +29,11 @@ struct Node {
 }
 
 fn nodes(glb: &[u8]) -> Vec<Node> {
-    let json = glb_json(glb);
-    let start = 20 + u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize + 8;
+    let glb = Glb::new(glb);
+    let json = &glb.json;
     let words = |accessor: &Value| -> Vec<[u8; 4]> {
         let accessor = &json["accessors"][accessor.as_u64().unwrap() as usize];
-        let view = &json["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
-        let offset = start + view["byteOffset"].as_u64().unwrap_or(0) as usize;
-        let length = view["byteLength"].as_u64().unwrap() as usize;
-        let (words, rest) = glb[offset..offset + length].as_chunks::<4>();
+        let (words, rest) = glb.view(&accessor["bufferView"]).as_chunks::<4>();
         assert!(rest.is_empty());
         words.to_vec()
     };

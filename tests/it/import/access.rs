@@ -5,6 +5,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 use crate::common::command::{BALL, Run, SQUARE, Workplace, glb_json};
+use crate::common::glb::{Glb, pack};
 use photosurface::{Access, Note, ReadError, read_gltf_bytes};
 use serde_json::{Value, json};
 
@@ -272,15 +273,10 @@ fn tga_is_made_into_png_wherever_it_is_named() {
             .success();
         let note = format!("note: {name}: image \"t.tga\" made into PNG from TGA\n");
         assert!(run.stderr.starts_with(&note), "{run}");
-        let glb = place.read("out.glb");
-        let json = glb_json(&glb);
-        assert_eq!(json["images"][0]["mimeType"], "image/png");
-        let view =
-            &json["bufferViews"][json["images"][0]["bufferView"].as_u64().expect("one") as usize];
-        let number = |key: &str| view[key].as_u64().unwrap_or_default() as usize;
-        let binary = 28 + u32::from_le_bytes(glb[12..16].try_into().expect("four bytes")) as usize;
-        let start = binary + number("byteOffset");
-        let picture = image::load_from_memory(&glb[start..start + number("byteLength")]);
+        let glb = Glb::new(&place.read("out.glb"));
+        let image = &glb.json["images"][0];
+        assert_eq!(image["mimeType"], "image/png");
+        let picture = image::load_from_memory(glb.view(&image["bufferView"]));
         let picture = picture.expect("a PNG").to_rgb8();
         assert_eq!(picture.dimensions(), (1, 1));
         assert_eq!(picture.get_pixel(0, 0).0, [255, 0, 0]);
@@ -416,25 +412,7 @@ fn the_files_of_pictures_are_limited_together() {
     for (index, slot) in slots.iter().enumerate() {
         file["materials"][0][slot] = json!({ "index": index + 1 });
     }
-    let mut text = file.to_string();
-    while !text.len().is_multiple_of(4) {
-        text.push(' ');
-    }
-    let mut binary = [secret(), picture.clone()].concat();
-    binary.resize(binary.len().next_multiple_of(4), 0);
-    let length = |bytes: usize| (bytes as u32).to_le_bytes();
-    let glb = [
-        b"glTF",
-        &2u32.to_le_bytes()[..],
-        &length(28 + text.len() + binary.len()),
-        &length(text.len()),
-        b"JSON",
-        text.as_bytes(),
-        &length(binary.len()),
-        b"BIN\0",
-        &binary,
-    ]
-    .concat();
+    let glb = pack(&file, &[secret(), picture.clone()].concat());
     let dropped = |access: &Access| {
         let (_, found) = access
             .read_gltf_bytes(&glb, Path::new(""))

@@ -10,7 +10,7 @@ use photosurface::{
 };
 use serde_json::{Value, json};
 
-use crate::common::made_glb::{MadeGlb, push};
+use crate::common::glb::{Glb, MadeGlb, push};
 
 fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -339,9 +339,7 @@ fn written(model: &Model) -> (Value, Vec<u8>, Vec<u8>) {
     let (mut glb, mut ply) = (vec![], vec![]);
     write_glb(&export, &mut glb).expect("a file");
     write_ply(&export, &mut ply).expect("a file");
-    let length = u32::from_le_bytes(glb[12..16].try_into().expect("four"));
-    let json = serde_json::from_slice(&glb[20..20 + length as usize]).expect("JSON");
-    (json, glb, ply)
+    (Glb::new(&glb).json, glb, ply)
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use photosurface::{Model, read_gltf_bytes};
 use serde_json::{Value, json};
 
-use crate::common::made_glb::{MadeGlb, push};
+use crate::common::glb::{MadeGlb, push};
 
 /// The limit of zeros in a small file, as `Quota` in `src/io/read/quota.rs` has it.
 const LIMIT: usize = 1 << 24;

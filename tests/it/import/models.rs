@@ -4,6 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::common::Random;
 use photosurface::{
     AlphaMode, DVec3, Model, Part, ReadError, Vec2, Vec4, Wrap, read_gltf_bytes, read_model,
 };
@@ -506,7 +507,7 @@ fn no_bytes_cause_a_panic() {
     assert!(files.len() > 40);
     let temporary = tempfile::tempdir().expect("a temporary folder");
     std::fs::copy(fixture("groups.mtl"), temporary.path().join("groups.mtl")).expect("a copy");
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let mut read = 0;
     for path in &files {
         let bytes = std::fs::read(path).expect("a fixture");
@@ -582,18 +583,5 @@ fn mend_lengths(glb: &mut [u8], more: u32) {
         let word: [u8; 4] = glb[at..at + 4].try_into().expect("four bytes");
         let length = u32::from_le_bytes(word) + more;
         glb[at..at + 4].copy_from_slice(&length.to_le_bytes());
-    }
-}
-
-/// Numbers that look random and are the same every time (splitmix64; Steele, Lea, Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((mixed ^ (mixed >> 31)) % limit as u64) as usize
     }
 }

@@ -5,6 +5,7 @@
 
 use std::path::Path;
 
+use crate::common::glb::pack;
 use photosurface::{Model, read_gltf_bytes, read_model};
 use serde_json::{Value, json};
 
@@ -141,19 +142,6 @@ impl Content {
 fn substitute(first: usize, same: usize) -> Value {
     json!({ "count": 1, "indices": { "bufferView": first, "componentType": 5121 },
         "values": { "bufferView": same } })
-}
-
-fn pack(json: &Value, data: &[u8]) -> Vec<u8> {
-    let mut json = json.to_string().into_bytes();
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let mut glb = b"glTF\x02\0\0\0".to_vec();
-    glb.extend((28 + json.len() as u32 + data.len() as u32).to_le_bytes());
-    for (name, content) in [(b"JSON", json.as_slice()), (b"BIN\0", data)] {
-        glb.extend((content.len() as u32).to_le_bytes());
-        glb.extend(name);
-        glb.extend(content);
-    }
-    glb
 }
 
 /// All but the reference.
