@@ -4,6 +4,8 @@
 //! pyvista and three.js all read alike. Data shared between steps (triangles, texture coordinates,
 //! colours, materials, images) is written once.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::io::Write;
 
 use glam::{DVec3, DVec4, Vec2};
@@ -231,11 +233,17 @@ impl<'a> GltfFile<'a> {
             self.animate(frames_per_second)?;
         }
         let images = self.materials.images().to_vec();
-        let views = images.iter().map(|image| {
-            let view = self.document.image(image.bytes())?;
-            Ok(view.value())
-        });
-        let views: Vec<usize> = views.collect::<Result<_, WriteError>>()?;
+        // Images that a file made of the same bytes share them here too.
+        let mut written = HashMap::new();
+        let mut views = Vec::with_capacity(images.len());
+        for image in &images {
+            let bytes = image.bytes();
+            let view = match written.entry((bytes.as_ptr(), bytes.len())) {
+                Entry::Occupied(entry) => *entry.get(),
+                Entry::Vacant(entry) => *entry.insert(self.document.image(bytes)?.value()),
+            };
+            views.push(view);
+        }
         let mut scene = json!({
             "extras": scene_extras,
             "nodes": (0..self.document.nodes.len()).collect::<Vec<_>>(),

@@ -1,5 +1,6 @@
 //! What a file may have read that somebody else made: where it lies, what it is, how large its pictures are.
 
+use std::collections::HashSet;
 use std::fs;
 use std::io::Cursor;
 use std::path::Path;
@@ -393,6 +394,14 @@ fn a_hundred_nodes_and_images_share_one_picture() {
             .iter()
             .all(|part| bytes(part) == bytes(&model.parts[0]))
     );
+    place.run("export a.gltf -o out.glb").success();
+    let written = glb_json(&place.read("out.glb"));
+    let images = written["images"].as_array().expect("images");
+    let views: HashSet<_> = images
+        .iter()
+        .map(|image| image["bufferView"].as_u64())
+        .collect();
+    assert_eq!((images.len(), views.len()), (100, 1));
 }
 
 /// The files of all pictures of a model together have a limit, parts of one another included.
