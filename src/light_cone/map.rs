@@ -125,10 +125,10 @@ impl PhotosurfaceMap {
     /// # Accuracy
     ///
     /// At most 8 units in the last place of `|result|`, in any direction and at any rapidity, also straight behind
-    /// and next to it, where all but `exp(-2 eta)` of a distance cancels (measured: 2.8 in `tests/accuracy.rs`
-    /// and `tests/hard_cases.rs`). The direction of motion counts as it was given, brought to unit length exactly.
-    /// Continuous everywhere; the observer's own place maps to zero. Beyond what `f64` holds a coordinate
-    /// becomes infinite, never NaN.
+    /// and next to it, where all but `exp(-2 eta)` of a distance cancels (measured: 2.8 in
+    /// `tests/it/physics/accuracy.rs` and `tests/it/physics/hard_cases.rs`). The direction of motion counts as it was
+    /// given, brought to unit length exactly. Continuous everywhere; the observer's own place maps to zero. Beyond what
+    /// `f64` holds a coordinate becomes infinite, never NaN.
     ///
     /// # Reference
     ///
@@ -230,8 +230,8 @@ impl PhotosurfaceMap {
     ///
     /// # Accuracy
     ///
-    /// Rounded up, and by at most 40 epsilon, at any rapidity (`tests/accuracy.rs`). NaN and negative radii get the
-    /// bound that holds everywhere.
+    /// Rounded up, and by at most 40 epsilon, at any rapidity (`tests/it/physics/accuracy.rs`). NaN and negative radii
+    /// get the bound that holds everywhere.
     pub fn stretch_bound(&self, offset_rest: DVec3, radius: f64) -> f64 {
         let everywhere = self.stretch * (1.0 + 4.0 * f64::EPSILON);
         let n = self.direction;
@@ -257,7 +257,7 @@ impl PhotosurfaceMap {
     /// # Accuracy
     ///
     /// A few units in the last place at any rapidity, never above [`PhotosurfaceMap::stretch_bound`]
-    /// (`tests/accuracy.rs`).
+    /// (`tests/it/physics/accuracy.rs`).
     pub fn stretch_at(&self, offset_rest: DVec3) -> f64 {
         self.stretch_toward(self.forwardness(offset_rest))
     }

@@ -8,7 +8,7 @@ use super::{Placed, Stage, Wanted};
 use crate::mesh::{Mesh, Part};
 use crate::tessellate::shares;
 
-/// Room that a budget leaves for predictions, which are good to about a half (`tests/cli.rs`).
+/// Room that a budget leaves for predictions, which are good to about a half (`tests/it/cli/accuracy.rs`).
 const PREDICTION_ROOM: f64 = 1.2;
 
 /// Of more triangles than this, all steps together, a prediction looks at as many, evenly spread, but at each step at

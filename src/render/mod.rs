@@ -3,7 +3,7 @@
 //! An independent witness of the photosurface: nothing here maps a vertex. A ray of light that reaches the
 //! observer is turned into the rest frame of each object, where the object is just a thing at rest, and
 //! followed back until it meets it. That a picture made so agrees with an ordinary picture of the
-//! photosurface is a statement about both (`tests/render.rs`).
+//! photosurface is a statement about both (`tests/it/render/pictures.rs`).
 
 mod body;
 mod camera;

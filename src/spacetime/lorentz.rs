@@ -46,8 +46,8 @@ impl Lorentz {
     /// # Accuracy
     ///
     /// Rapidity, direction and rotation of two boosts to a few units in the last place, at any pair of velocities, also
-    /// all but equal and all but opposite ones (`tests/lorentz.rs`). Collinear boosts compose to the exact sum of
-    /// their rapidities. After a rotation the direction of the next boost is one more rounded number, of which
+    /// all but equal and all but opposite ones (`tests/it/physics/lorentz.rs`). Collinear boosts compose to the exact
+    /// sum of their rapidities. After a rotation the direction of the next boost is one more rounded number, of which
     /// all but opposite velocities make `cosh` of half the larger rapidity times as much.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
@@ -82,12 +82,13 @@ impl Lorentz {
     /// The coordinates of `event` in the new frame.
     ///
     /// In light-cone coordinates `t + x`, `t - x` along the boost, which it only multiplies. These are taken with twice
-    /// the digits: what cancels in them, as for something that keeps up with light for a long time, leaves all digits of
-    /// what remains.
+    /// the digits: what cancels in them, as for something that keeps up with light for a long time, leaves all digits
+    /// of what remains.
     ///
     /// # Accuracy
     ///
-    /// A few units in the last place of the larger of the new time and the new distance (`tests/lorentz.rs`).
+    /// A few units in the last place of the larger of the new time and the new distance
+    /// (`tests/it/physics/lorentz.rs`).
     pub fn apply(&self, event: Event) -> Event {
         let direction = self.boost.direction();
         let heading = self.boost.heading();

@@ -21,7 +21,7 @@ pub const MAX_RAPIDITY: f64 = 350.0;
 /// Two things are kept beside what rounds them. `exp(eta)`: half a unit in the last place of a rapidity of 300
 /// is 128 units of it. And the direction as it was given: close behind a fast observer its last place is
 /// magnified by `gamma`. So what counts is what was given, to a few units in the last place
-/// (`tests/hard_cases.rs`).
+/// (`tests/it/physics/hard_cases.rs`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Velocity {
     rapidity: f64,

@@ -82,7 +82,7 @@ pub struct Pictures {
 /// than any that is studied: their mean is right whatever the picture, and has nothing in common with a lattice. There
 /// are two such references, independent of each other. A product of the picture's differences from both is, in the
 /// mean, the square of its error, without that of a reference; and what the two differ by tells how well it is known
-/// (`tests/cost_of_rays.rs`, against areas in closed form).
+/// (`tests/it/cost/rays.rs`, against areas in closed form).
 ///
 /// # Reference
 ///

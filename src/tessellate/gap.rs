@@ -85,8 +85,8 @@ const PLAIN: std::ops::RangeInclusive<f64> = two_to(-200)..=two_to(200);
 /// # Accuracy
 ///
 /// `true <= result <= (1 + 32 epsilon) true + 1e-160 min(|a|, |b|) + 5e-324` for all finite offsets: the
-/// analysis of each rounding is with the code, `tests/gap.rs` compares with 300 digits. Zero for an edge
-/// without length and for one that ends at the observer. NaN or infinity if a coordinate is not finite.
+/// analysis of each rounding is with the code, `tests/it/tessellation/gap.rs` compares with 300 digits. Zero for an
+/// edge without length and for one that ends at the observer. NaN or infinity if a coordinate is not finite.
 pub fn edge_gap(a: DVec3, b: DVec3) -> f64 {
     let (a, b) = if before(b, a) { (b, a) } else { (a, b) };
     let (a2, b2) = (a.length_squared(), b.length_squared());
@@ -111,9 +111,9 @@ pub fn edge_gap(a: DVec3, b: DVec3) -> f64 {
 /// # Accuracy
 ///
 /// Never below the true value. Never more than `2 (1 + 32 epsilon)` times it, but for the floor of
-/// [`edge_gap`], whatever the triangle (both proven). Measured in `tests/gap.rs`: above the true gap by less than
-/// 1e-12 of it for triangles with angles on the observer's sky of at least 3 degrees and distances within a factor of
-/// 10; by less than 1e-8 of it for needles, observers on or next to a corner, an edge, the face or the
+/// [`edge_gap`], whatever the triangle (both proven). Measured in `tests/it/tessellation/gap.rs`: above the true gap by
+/// less than 1e-12 of it for triangles with angles on the observer's sky of at least 3 degrees and distances within a
+/// factor of 10; by less than 1e-8 of it for needles, observers on or next to a corner, an edge, the face or the
 /// plane, neighbouring floats. The factor 2 is needed only where distances from the observer differ by 1e30.
 pub fn triangle_gap(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let [a, b, c] = sorted([a, b, c]);

@@ -3,7 +3,8 @@
 //! `cargo bench --bench files`; with `-- --quick` in a fraction of the time. Both are read from files and written to
 //! memory.
 
-#[path = "../common/mod.rs"]
+#[allow(dead_code, reason = "the tests use the rest")]
+#[path = "../it/common/mod.rs"]
 mod common;
 mod settings;
 

@@ -3,7 +3,8 @@
 //! `cargo bench --bench kernels`; with `-- --quick` in a fraction of the time. Points are even in a ball around the
 //! observer, or in clusters next to it, some ahead and some behind, where other branches are taken.
 
-#[path = "../common/mod.rs"]
+#[allow(dead_code, reason = "the tests use the rest")]
+#[path = "../it/common/mod.rs"]
 mod common;
 mod settings;
 

@@ -6,7 +6,8 @@
 
 #![allow(clippy::print_stdout, reason = "a table is what it is for")]
 
-#[path = "../common/mod.rs"]
+#[allow(dead_code, reason = "the tests use the rest")]
+#[path = "../it/common/mod.rs"]
 mod common;
 
 use std::sync::Arc;

@@ -3,7 +3,8 @@
 //!
 //! `cargo bench --bench rays`; with `-- --quick` in a fraction of the time.
 
-#[path = "../common/mod.rs"]
+#[allow(dead_code, reason = "the tests use the rest")]
+#[path = "../it/common/mod.rs"]
 mod common;
 mod settings;
 

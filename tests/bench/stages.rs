@@ -3,7 +3,8 @@
 //! `cargo bench --bench stages`; with `-- --quick` in a fraction of the time. The table of how many triangles the
 //! plates take, against theory, is that of `cargo bench --bench plates`.
 
-#[path = "../common/mod.rs"]
+#[allow(dead_code, reason = "the tests use the rest")]
+#[path = "../it/common/mod.rs"]
 mod common;
 mod settings;
 

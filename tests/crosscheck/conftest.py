@@ -1,4 +1,7 @@
-"""Runs the binary under test. `cargo test --test crosscheck` makes the environment this runs in."""
+"""Runs the binary under test.
+
+`cargo test --test it crosscheck -- --include-ignored` makes the environment this runs in.
+"""
 
 import json
 import os
@@ -13,7 +16,7 @@ collect_ignore = ["full"]
 
 def pytest_configure():
     if "PHOTOSURFACE_BINARY" not in os.environ:
-        pytest.exit("these tests are run by `cargo test --test crosscheck`", returncode=3)
+        pytest.exit("these tests are run by `cargo test --test it crosscheck -- --include-ignored`", returncode=3)
 
 
 @pytest.fixture(scope="session")

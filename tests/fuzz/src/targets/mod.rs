@@ -2,7 +2,7 @@
 //!
 //! Each target is a function that takes any bytes. It panics where the library is wrong; a value or an error
 //! of the library are equally good. `fuzz_targets/` hands the functions to libFuzzer, and the root package's
-//! `tests/fuzz_corpus.rs` runs them over the corpus.
+//! `tests/it/fuzz_corpus.rs` runs them over the corpus.
 
 mod case;
 mod export;

@@ -1,0 +1,232 @@
+//! The flags of the binary: each reaches its parameter; what cannot be is refused in words that help.
+
+use crate::common::command::{Workplace, node_names};
+use serde_json::Value;
+
+#[test]
+fn every_flag_reaches_its_parameter() {
+    let workplace = Workplace::with_ball();
+    let cases: &[(&str, &str, &[f64])] = &[
+        ("", "observer_rapidity", &[std::f64::consts::LN_2]),
+        ("--beta 0.8", "observer_beta", &[0.8]),
+        (
+            "--one-minus-beta 1e-30",
+            "observer_rapidity",
+            &[34.885_349_985_190_66],
+        ),
+        ("--gamma 5", "observer_gamma", &[5.0]),
+        ("--rapidity 40", "observer_rapidity", &[40.0]),
+        ("--beta 0", "observer_gamma", &[1.0]),
+        (
+            "--direction=-3,0,4",
+            "observer_direction",
+            &[-0.6, 0.0, 0.8],
+        ),
+        (
+            "--direction 0,0,-2",
+            "observer_rapidity",
+            &[std::f64::consts::LN_2],
+        ),
+        (
+            "--observer 1,-2,3.5",
+            "observer_position",
+            &[1.0, -2.0, 3.5],
+        ),
+        ("--observer -1,2,3", "observer_position", &[-1.0, 2.0, 3.0]),
+        ("--time -4", "observer_time", &[-4.0]),
+        ("--steps 1,2.5", "steps", &[1.0, 2.5]),
+        ("--steps -1", "steps", &[-1.0]),
+        ("--steps=-6..6/3", "steps", &[-6.0, 0.0, 6.0]),
+    ];
+    for (flags, key, expected) in cases {
+        let run = workplace
+            .run(&format!(
+                "export ball.json -o out.glb --report report.json {flags}"
+            ))
+            .success();
+        let scene = &workplace.read_json("report.json")["scene"];
+        let found: Vec<f64> = match &scene[key] {
+            Value::Array(numbers) => numbers.iter().filter_map(Value::as_f64).collect(),
+            number => number.as_f64().into_iter().collect(),
+        };
+        assert_eq!(found.len(), expected.len(), "{key}: {found:?}\n{run}");
+        for (found, expected) in found.iter().zip(*expected) {
+            assert!(
+                (found - expected).abs() <= 4e-15 * expected.abs(),
+                "{key}: {found} {expected}\n{run}"
+            );
+        }
+    }
+    workplace
+        .run("export ball.json -o out.glb --marker 0.25")
+        .success();
+    assert_eq!(node_names(&workplace.read("out.glb")), ["observer", "ball"]);
+    workplace
+        .run("export --marker 0 --steps 0 -o out.glb")
+        .success();
+    assert_eq!(node_names(&workplace.read("out.glb")), ["sphere"]);
+}
+
+#[test]
+fn impossible_flags_are_refused_by_name() {
+    let workplace = Workplace::with_ball();
+    workplace
+        .run("export --beta 1")
+        .error(&["--beta", "beta is 1, expected 0 <= beta < 1"]);
+    workplace.run("export --beta -0.5").error(&["beta is -0.5"]);
+    workplace
+        .run("export --gamma 0.5")
+        .error(&["--gamma", "gamma is 0.5"]);
+    workplace
+        .run("export --rapidity 400")
+        .error(&["--rapidity", "at most 350"]);
+    workplace
+        .run("export --one-minus-beta 2")
+        .error(&["--one-minus-beta", "one_minus_beta is 2"]);
+    workplace
+        .run("export --beta 0.5 --gamma 2")
+        .error(&["cannot be used with"]);
+    workplace
+        .run("export --direction 0,0,0")
+        .error(&["--direction", "not zero"]);
+    workplace
+        .run("export --direction 1,2")
+        .error(&["--direction", "expected three"]);
+    workplace
+        .run("export --steps 1..2")
+        .error(&["--steps", "FROM..TO/COUNT"]);
+    workplace
+        .run("export --time nan")
+        .error(&["--time", "finite"]);
+    workplace
+        .run("export --marker -1")
+        .error(&["--marker", "-1"]);
+    for radius in ["1e70", "1e-65", "5e-324", "1.7e308", "-0.001", "inf", "nan"] {
+        let scene = format!(r#"{{ "observer": {{ "marker": {radius} }}, "objects": [] }}"#);
+        workplace.write("marker.json", scene);
+        for command in ["export -o out.glb", "render -o out.png", "check", "cost"] {
+            (workplace.run(&format!("{command} ball.json --marker={radius}")))
+                .error(&["--marker", radius]);
+            let run = workplace.run(&format!("{command} marker.json"));
+            run.error(&["marker.json: line 1, column "]);
+        }
+    }
+    std::fs::remove_file(workplace.path("marker.json")).expect("it was written");
+    workplace
+        .run("export --example cube ball.json")
+        .error(&["cannot be used with"]);
+    workplace.run("export --nonsense").error(&["--nonsense"]);
+    workplace.run("").error(&["Usage"]);
+    assert_eq!(workplace.files(), ["ball.json", "square.obj"]);
+}
+
+#[test]
+fn what_is_no_number_is_told_with_what_was_expected() {
+    let workplace = Workplace::with_ball();
+    for (line, words) in [
+        (
+            "export --beta abc",
+            ["--beta", "\"abc\" is no number, expected one such as 0.5"],
+        ),
+        ("export --gamma inf", ["--gamma", "inf is not finite"]),
+        // Negative numbers of every form are values, no flags; a flag in the place of a value is none.
+        (
+            "export --beta -1e-3",
+            ["--beta", "-0.001, expected 0 <= beta"],
+        ),
+        (
+            "export --marker -5E-1",
+            ["--marker is -0.5", "expected a length"],
+        ),
+        ("render --fov -1e-3", ["--fov", "-0.001"]),
+        ("export --time -q", ["--time", "\"-q\" is no number"]),
+        ("export --marker x", ["--marker", "\"x\" is no number"]),
+        ("render --fov wide", ["--fov", "\"wide\" is no number"]),
+        ("render --samples 0", ["--samples", "expected 1 to 16"]),
+        ("cost --repeats 0", ["--repeats", "expected at least 1"]),
+        ("cost --samples x", ["--samples", "expected a whole number"]),
+        (
+            "export --fps 1e300 --animate --steps 0,1",
+            ["--fps is 1e300", "from 0.001 to 1000"],
+        ),
+    ] {
+        workplace.run(line).error(&words);
+    }
+    let run = workplace
+        .run("export --marker -1")
+        .error(&["--marker is -1", "or 0 for none"]);
+    assert!(!run.stderr.contains("> 0"), "{run}");
+}
+
+#[test]
+fn how_to_animate_takes_an_equals_sign_and_that_is_said() {
+    let workplace = Workplace::with_ball();
+    for line in [
+        "export ball.json --steps 0,1 --animate morph",
+        "export --animate morph",
+    ] {
+        workplace.run(line).error(&["morph", "--animate=morph"]);
+    }
+    assert_eq!(workplace.files(), ["ball.json", "square.obj"]);
+}
+
+/// "To pass '--no-subdivide' as a value" would make it a file name.
+#[test]
+fn flags_of_other_commands_are_not_taken_for_files() {
+    let workplace = Workplace::new();
+    for (line, flag) in [
+        ("cost --no-subdivide", "'--no-subdivide'"),
+        ("render --lod 1e-2,1e-3", "'--lod'"),
+        ("check --nonsense", "'--nonsense'"),
+    ] {
+        let run = workplace.run(line).error(&["unexpected argument", flag]);
+        assert!(!run.stderr.contains("-- --"), "{run}");
+    }
+    // What is like another flag is still told.
+    workplace
+        .run("export --bete 0.5")
+        .error(&["--bete", "--beta"]);
+}
+
+#[test]
+fn a_flag_that_would_change_nothing_is_refused() {
+    let workplace = Workplace::with_ball();
+    for (line, words) in [
+        (
+            "render ball.json --tolerance 1e-2",
+            ["--tolerance is for meshes", "--method mesh"],
+        ),
+        (
+            "render ball.json --no-subdivide",
+            ["--no-subdivide is for meshes", "--method mesh"],
+        ),
+        (
+            "render ball.json --max-triangles 9",
+            ["--max-triangles is for meshes", "--method mesh"],
+        ),
+        ("cost ball.json --plot-size 960x480", ["--plot", "required"]),
+        (
+            "cost ball.json --only meshes --size 9x9",
+            ["--size is for pictures", "--only meshes"],
+        ),
+        (
+            "cost ball.json --only meshes --fov 60",
+            ["--fov is for pictures", "--only meshes"],
+        ),
+        (
+            "cost ball.json --only rays --samples 9",
+            ["--samples is for meshes", "--only rays"],
+        ),
+        (
+            "cost ball.json --only rays --tolerances 1",
+            ["--tolerances is for meshes", "--only rays"],
+        ),
+        ("export ball.json --fps 3", ["--animate", "required"]),
+    ] {
+        workplace.run(line).error(&words);
+    }
+    for line in ["--sheet", "--method mesh", "--view outside"] {
+        let line = format!("render ball.json {line} --tolerance 1e-1 --size 16x9 -o out.png");
+        workplace.run(&line).success();
+    }
+}

@@ -1,0 +1,71 @@
+//! All tests of what the crate and its command do from outside, in one program: `cargo test --test it`.
+//!
+//! A word after it chooses tests by their path, as in `cargo test --test it golden`. `tests/README.md` says what is
+//! checked by what.
+//!
+//! All tests share one process and run side by side. A test that changes or measures the process itself runs in
+//! one of its own (`common/alone.rs`).
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot be set up has failed"
+)]
+
+mod common;
+
+mod physics {
+    mod accuracy;
+    mod hard_cases;
+    mod known_answers;
+    mod lorentz;
+    mod moving_objects;
+    mod penrose_terrell;
+    mod properties;
+}
+
+mod tessellation {
+    mod certificates;
+    mod covering;
+    mod curves;
+    mod gap;
+    mod properties;
+}
+
+mod import {
+    mod access;
+    mod as_written;
+    mod limits;
+    mod models;
+    mod storage;
+    mod text;
+}
+
+mod export {
+    mod animation;
+    mod hard_properties;
+    mod materials;
+    mod seams;
+}
+
+mod render {
+    mod golden;
+    mod pictures;
+}
+
+mod cli {
+    mod accuracy;
+    mod check;
+    mod commands;
+    mod faults;
+    mod flags;
+    mod render;
+}
+
+mod cost {
+    mod meshes;
+    mod rays;
+}
+
+mod crosscheck;
+mod fuzz_corpus;
+mod regression;

@@ -1,0 +1,125 @@
+//! Certified subdivision of curved shapes, against closed forms of their surfaces.
+
+use crate::common::Random;
+use crate::common::refining::{Sighting, distance_to_mesh, mix, random_weights};
+use photosurface::{Appearance, DVec3, Precision, Shape, Source, Tolerance, Velocity};
+
+fn moving(beta: f64) -> Velocity {
+    Velocity::from_beta(beta, DVec3::new(0.3, -0.2, -1.0)).unwrap()
+}
+
+/// The certificate of a curved shape is against the curve itself: from it to the mesh and back.
+#[test]
+fn curved_shapes_are_certified_against_the_curve() {
+    let mut random = Random::new(8);
+    let shapes = [
+        Shape::sphere(1.0),
+        Shape::cylinder(0.5, 2.0),
+        Shape::cone(0.7, 1.5),
+        Shape::torus(1.0, 0.3),
+    ];
+    for shape in shapes.map(Result::unwrap) {
+        for (observer, tolerance) in [
+            (DVec3::new(0.3, 0.2, 4.0), Tolerance::Relative(2e-3)),
+            (DVec3::new(0.1, 0.2, 0.3), Tolerance::Absolute(1e-2)),
+        ] {
+            let mut sighting = Sighting::new(observer, moving(0.9), tolerance);
+            sighting.wanted.precision = Precision::Single;
+            let source = Source::Shape(shape.clone(), Appearance::default());
+            let sighted = &sighting.of_source(source)[0];
+            let certificate = &sighted.certificate;
+            assert!(certificate.complete, "{shape:?}: {certificate:?}");
+            assert!(certificate.curvature > 0.0);
+            for _ in 0..200 {
+                let truth = sighting.seen(on_curve(&shape, &mut random));
+                let distance = distance_to_mesh(truth, &sighted.seen);
+                assert!(
+                    distance <= certificate.total,
+                    "{shape:?}: {distance:e} {certificate:?}"
+                );
+            }
+            let per_triangle = 2000usize.div_ceil(sighted.triangle_count());
+            for corners in sighted.seen.triangles() {
+                for _ in 0..per_triangle {
+                    let weights = random_weights(&mut random);
+                    let flat = mix(
+                        corners.map(|c| sighted.seen.positions()[c as usize]),
+                        weights,
+                    );
+                    let rest = mix(corners.map(|c| sighted.rest[c as usize]), weights);
+                    // The place of the curve next to the one at rest is one of those that may be the nearest.
+                    let distance = flat.distance(sighting.seen(to_curve(&shape, rest)));
+                    assert!(
+                        distance <= certificate.total,
+                        "{shape:?}: {distance:e} {certificate:?}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// The corners of the generating outline in the half plane of distance from and height along the axis.
+fn outline(shape: &Shape) -> &'static [[f64; 2]] {
+    match shape {
+        Shape::Cylinder(_) => &[[0.0, 1.0], [0.5, 1.0], [0.5, -1.0], [0.0, -1.0]],
+        Shape::Cone(_) => &[[0.0, 0.75], [0.7, -0.75], [0.0, -0.75]],
+        _ => unreachable!("round"),
+    }
+}
+
+fn turned([radius, height]: [f64; 2], direction: DVec3) -> DVec3 {
+    let aside = DVec3::new(direction.x, 0.0, direction.z).normalize();
+    aside * radius + DVec3::Y * height
+}
+
+fn on_curve(shape: &Shape, random: &mut Random) -> DVec3 {
+    let direction = random.direction();
+    match shape {
+        Shape::Sphere(_) => direction,
+        Shape::Torus(_) => {
+            let angle = random.between(0.0, std::f64::consts::TAU);
+            turned([1.0 + 0.3 * angle.cos(), 0.3 * angle.sin()], direction)
+        }
+        _ => {
+            let corners = outline(shape);
+            let side = random.between(0.0, corners.len() as f64 - 1.0);
+            let (a, b) = (corners[side as usize], corners[side as usize + 1]);
+            turned(
+                [0, 1].map(|i| a[i] + (b[i] - a[i]) * side.fract()),
+                direction,
+            )
+        }
+    }
+}
+
+/// The place of the curved surface nearest to one near to it.
+fn to_curve(shape: &Shape, place: DVec3) -> DVec3 {
+    let radius = place.x.hypot(place.z);
+    match shape {
+        Shape::Sphere(_) => place.normalize(),
+        Shape::Torus(_) => {
+            let middle = turned([1.0, 0.0], place);
+            middle + (place - middle).normalize() * 0.3
+        }
+        _ => {
+            let to_side = |ends: &[[f64; 2]]| {
+                let [a, b] = [
+                    DVec3::new(ends[0][0], ends[0][1], 0.0),
+                    DVec3::new(ends[1][0], ends[1][1], 0.0),
+                ];
+                let here = DVec3::new(radius, place.y, 0.0);
+                let part = (here - a).dot(b - a) / (b - a).length_squared();
+                let on = a + (b - a) * part.clamp(0.0, 1.0);
+                (here.distance(on), [on.x, on.y])
+            };
+            let sides = outline(shape).windows(2).map(to_side);
+            let nearest = sides.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap().1;
+            if radius == 0.0 {
+                place
+            } else {
+                turned(nearest, place)
+            }
+        }
+    }
+}
