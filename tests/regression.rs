@@ -77,7 +77,15 @@ fn a_stderr_that_is_full_changes_no_exit_status() {
 #[test]
 fn a_stdout_that_is_full_is_named() {
     let workplace = Workplace::new();
-    for command in ["schema", "example", "example cube", "check", "export -o -"] {
+    for command in [
+        "schema",
+        "example",
+        "example cube",
+        "check",
+        "export -o -",
+        "export --help",
+        "--version",
+    ] {
         workplace
             .run_shell(&format!("photosurface {command} >/dev/full"))
             .error(&["error: stdout: ", "No space left"]);
