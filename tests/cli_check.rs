@@ -95,6 +95,7 @@ fn check_ends_as_the_export_will() {
 #[test]
 fn check_is_of_the_format_that_is_to_be_written() {
     let workplace = Workplace::with_ball();
+    workplace.write("tiny.obj", "v 0 0 0\nv 1e-50 0 0\nv 0 1e-50 0\nf 1 2 3\n");
     let far = "square.obj --observer 1e40,0,0 --beta 0.5 --tolerance abs:1e30";
     for line in [format!("check {far}"), format!("export {far} -o out.glb")] {
         let run = workplace
@@ -109,9 +110,25 @@ fn check_is_of_the_format_that_is_to_be_written() {
         .run(&format!("check {far} --format ply"))
         .success();
     workplace.run(&format!("export {far} -o out.ply")).success();
-    workplace
-        .run("check square.obj --rapidity 300")
-        .error(&["smaller rapidity"]);
+    // Too fast and too small are no matter of distance, and a PLY holds these too.
+    for (flags, word) in [
+        ("square.obj --rapidity 300", "smaller rapidity"),
+        ("--rapidity 350", "smaller rapidity"),
+        ("tiny.obj --beta 0.5", "too small"),
+    ] {
+        let glb = [
+            "check FLAGS",
+            "export FLAGS -o out.glb",
+            "export FLAGS -o out.gltf",
+        ];
+        for line in glb.map(|line| line.replace("FLAGS", flags)) {
+            workplace
+                .run(&line)
+                .error(&[word, "; or write a .ply, whose 64-bit numbers hold it"]);
+        }
+        let status = workplace.run(&format!("check {flags} --format ply")).status;
+        assert!(status < 2, "{flags}");
+    }
 }
 
 /// A point has no diagonal that a tolerance could be a fraction of.

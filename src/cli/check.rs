@@ -10,6 +10,7 @@ use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, total};
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print_if_open, shown};
+use super::output::check_range;
 
 /// Validate a scene or a mesh, and say what an export would make
 ///
@@ -75,7 +76,7 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
         if let Err(error) = format.least_size(&stage, stage.scene().steps().len()) {
             verbosity.note(format_args!("{}: {error}", input.place));
         }
-        let range = format.check_range(&stage);
+        let range = check_range(format, &stage);
         range.with_context(|| input.place.clone())?;
         let wanted = args.accuracy.wanted_in(format, stage.scene());
         let (stage, predictions) = args.accuracy.within_budget(stage, wanted, verbosity);

@@ -22,8 +22,8 @@ use super::args::{InputArgs, ObserverArgs, number};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print, size, stdout_is_closed};
 use super::output::{
-    check_destinations, extension, file_for_each, from_first_to_last, is_stdout, progress_bar,
-    with_suffix,
+    check_destinations, check_range, extension, file_for_each, from_first_to_last, is_stdout,
+    progress_bar, with_suffix,
 };
 
 /// Write photosurfaces as meshes
@@ -157,7 +157,7 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
         format
             .least_size(&stage, if output.split { 1 } else { steps })
             .with_context(of_file)?;
-        format.check_range(&stage).with_context(of_file)?;
+        check_range(format, &stage).with_context(of_file)?;
         if index == 0 && format != Format::Ply {
             tell_replaced_names(&stage, &path, args.verbosity);
         }

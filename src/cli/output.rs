@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{bail, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
-use photosurface::{destination, step_label};
+use photosurface::{Format, Stage, destination, step_label};
 
 use super::messages::Verbosity;
 
@@ -78,6 +78,18 @@ pub(super) fn check_destinations(
         places.insert(place, file);
     }
     Ok(())
+}
+
+/// Whether a file of this format can hold what is seen. Where another one could, the error says so.
+pub(super) fn check_range(format: Format, stage: &Stage) -> anyhow::Result<()> {
+    let Err(error) = format.check_range(stage) else {
+        return Ok(());
+    };
+    ensure!(
+        format == Format::Ply || Format::Ply.check_range(stage).is_err(),
+        "{error}; or write a .ply, whose 64-bit numbers hold it"
+    );
+    Err(error.into())
 }
 
 /// A bar of so many things, on a terminal.
