@@ -71,10 +71,13 @@ fn check_ends_as_the_export_will() {
         ("ball.json", 0),
         ("--no-subdivide --tolerance 1e-6", 1),
         ("--tolerance 1e-9 --format ply --max-triangles 1000", 1),
-        ("square.obj --max-triangles 1", 1),
+        // What is there already is within the tolerance, and stays.
+        ("square.obj --max-triangles 1", 0),
+        ("ball.json --max-triangles 0", 0),
+        ("--max-triangles 0", 1),
         (
             "square.obj --max-triangles 1 --no-subdivide --tolerance 1",
-            1,
+            0,
         ),
         ("square.obj --lod 1e-2,1e-9", 1),
         ("square.obj --lod 1e-2,1e-3", 0),
@@ -82,12 +85,28 @@ fn check_ends_as_the_export_will() {
     ] {
         let run = workplace.run(&format!("check {flags}"));
         assert_eq!(run.status, status, "{run}");
+        let says_no = status == 1;
+        if status < 2 && !flags.contains("--lod") {
+            let certified = run.stdout_text().lines().nth(1).expect("a table");
+            assert_eq!(certified.trim_end().ends_with(" no"), says_no, "{run}");
+        }
         let (flags, extension) = match flags.split_once("--format ply") {
             Some((before, after)) => (format!("{before}{after}"), "ply"),
             None => (flags.to_owned(), "glb"),
         };
-        let run = workplace.run(&format!("export {flags} -o out.{extension}"));
+        let report = if flags.contains("--lod") {
+            ""
+        } else {
+            "--report report.json"
+        };
+        let run = workplace.run(&format!("export {flags} -o out.{extension} {report}"));
         assert_eq!(run.status, status, "{run}");
+        if status < 2 && !report.is_empty() {
+            let report = workplace.read_json("report.json");
+            let mut objects = report["objects"].as_array().expect("objects").iter();
+            let all = objects.all(|object| object["certificate"]["complete"] == true);
+            assert_eq!(all, !says_no, "{run}");
+        }
     }
 }
 

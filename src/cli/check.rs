@@ -6,7 +6,7 @@ use anyhow::Context;
 use photosurface::{Format, Prediction, Stage};
 
 use super::Status;
-use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, total};
+use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, predicted, total};
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print_if_open, shown};
@@ -17,8 +17,8 @@ use super::output::check_range;
 /// Reads everything that an export would read and prints, for every object, its parts, how fast it moves relative to
 /// the observer, how many triangles there are before refinement and about how many its photosurfaces take, both of all
 /// steps together, and whether they will be certified to be within the tolerance.
-/// Makes and writes nothing. Exit status: 0 where that of the export will be 0, 1 where it will be 1 (not certified, or
-/// more triangles than --max-triangles), 2 an error, 130 interrupted.
+/// Makes and writes nothing. Exit status: 0 where that of the export will be 0, 1 where it will be 1 (not certified), 2 an
+/// error, 130 interrupted.
 #[derive(Debug, clap::Args)]
 pub(super) struct CheckArgs {
     #[command(flatten)]
@@ -81,6 +81,8 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
         let wanted = args.accuracy.wanted_in(format, stage.scene());
         let (stage, predictions) = args.accuracy.within_budget(stage, wanted, verbosity);
         print_if_open(|out| table(&stage, &predictions, out))?;
+        args.accuracy
+            .tell_beyond_budget(predicted(&predictions), verbosity);
         if !args.accuracy.will_be_kept(&predictions) {
             status = Status::NotCertified;
         }

@@ -174,6 +174,11 @@ impl Stage {
     ) -> f64 {
         self.objects[object].loosening = MAX_LOOSENING;
         let least = needed(self, object);
+        if need <= least {
+            // What is there takes all of it, and is kept whatever the budget.
+            self.objects[object].loosening = 1.0;
+            return need;
+        }
         share = share.max(SPENT_AT_LEAST * least);
         let mut too_tight = 1.0;
         let mut loosening: f64 = 1.0;
