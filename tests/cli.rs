@@ -329,7 +329,7 @@ fn no_two_outputs_are_one_file() {
     ] {
         workplace
             .run(&format!("export ball.json {arguments}"))
-            .error(&["written over", "which is an output too"]);
+            .error(&["the output ", "written over another output, "]);
         assert_eq!(workplace.files(), ["ball.json", "square.obj"]);
     }
     #[cfg(unix)]
@@ -337,7 +337,7 @@ fn no_two_outputs_are_one_file() {
         std::os::unix::fs::symlink("b.glb", workplace.path("link")).unwrap();
         workplace
             .run("export ball.json -o b.glb --report link")
-            .error(&["link: would be written over b.glb"]);
+            .error(&["the output link would be written over another output, b.glb"]);
         workplace.run("export ball.json --report link").success();
         assert_eq!(
             workplace.read_json("b.glb")["objects"][0]["object"],

@@ -50,7 +50,7 @@ fn what_a_source_refers_to_is_not_written_over() {
     ] {
         workplace
             .run(&format!("export {input} {output}"))
-            .error(&["would be written over what is read"]);
+            .error(&["the output ", " would be written over the input "]);
     }
     assert_eq!(workplace.files(), files);
     for (file, before) in files.iter().zip(before) {

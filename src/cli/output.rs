@@ -1,6 +1,6 @@
 //! Where results go: names of files, what must not be written over, how far the work has got.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::fs;
 use std::io::{IsTerminal, stderr};
 use std::path::{Path, PathBuf};
@@ -56,21 +56,23 @@ pub(super) fn check_destinations(
     written: impl IntoIterator<Item = PathBuf>,
     read: &[PathBuf],
 ) -> anyhow::Result<()> {
-    let read: HashSet<_> = read
+    let read: HashMap<PathBuf, &PathBuf> = read
         .iter()
-        .filter_map(|file| fs::canonicalize(file).ok())
+        .filter_map(|file| Some((fs::canonicalize(file).ok()?, file)))
         .collect();
     let mut places: HashMap<PathBuf, PathBuf> = HashMap::new();
     for file in written.into_iter().filter(|file| !is_stdout(file)) {
         let place = destination(&file)?;
-        ensure!(
-            !read.contains(&place),
-            "{}: would be written over what is read; choose another name",
-            file.display()
-        );
+        if let Some(input) = read.get(&place) {
+            bail!(
+                "the output {} would be written over the input {}; choose another name for the output",
+                file.display(),
+                input.display()
+            );
+        }
         if let Some(other) = places.get(&place) {
             bail!(
-                "{}: would be written over {}, which is an output too; choose another name",
+                "the output {} would be written over another output, {}; choose another name for one of them",
                 file.display(),
                 other.display()
             );
