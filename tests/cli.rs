@@ -139,11 +139,34 @@ fn stdin_and_stdout_take_the_place_of_files() {
         .error(&["stdin", "line 1", "objects"]);
     workplace
         .run_with("export - -o x.glb", b"\xff\xfe", &[])
-        .error(&["stdin", "this is neither"]);
+        .error(&["stdin", "this is neither", "give its name in place of -"]);
     workplace.run("export --split -o -").error(&["--split"]);
     workplace
         .run("export -o - --report -")
         .error(&["cannot both go to stdout"]);
+}
+
+/// A name says what a file is; stdout has none.
+#[test]
+fn stdout_takes_the_format_that_is_asked_for() {
+    let workplace = Workplace::with_ball();
+    workplace.run("export ball.json -o file.glb").success();
+    workplace
+        .run("export ball.json -o file.ply --format ply")
+        .success();
+    for format in ["glb", "ply"] {
+        let line = format!("export ball.json -o - --format {format}");
+        let run = workplace.run(&line).success();
+        assert!(run.stdout == workplace.read(&format!("file.{format}")));
+    }
+    workplace.run("export ball.json --format ply").success();
+    assert!(workplace.read("ball_photosurface.ply") == workplace.read("file.ply"));
+    workplace
+        .run("export ball.json -o - --format gltf")
+        .error(&["--format gltf", "expected glb or ply"]);
+    workplace
+        .run("export ball.json -o other.glb --format ply")
+        .error(&["other.glb: is .glb by its name and .ply by --format"]);
 }
 
 #[test]

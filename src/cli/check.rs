@@ -10,7 +10,7 @@ use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, predicted, total
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print_if_open, shown};
-use super::output::check_range;
+use super::output::{FileFormat, check_range};
 
 /// Validate a scene or a mesh, and say what an export would make
 ///
@@ -39,24 +39,6 @@ pub(super) struct CheckArgs {
     /// Say more: every part of every object
     #[arg(short, long, help_heading = "Messages")]
     verbose: bool,
-}
-
-/// As `export` writes them.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum FileFormat {
-    Glb,
-    Gltf,
-    Ply,
-}
-
-impl From<FileFormat> for Format {
-    fn from(format: FileFormat) -> Self {
-        match format {
-            FileFormat::Glb => Self::Glb,
-            FileFormat::Gltf => Self::Gltf,
-            FileFormat::Ply => Self::Ply,
-        }
-    }
 }
 
 pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {

@@ -6,10 +6,46 @@ use std::io::{IsTerminal, stderr};
 use std::path::{Path, PathBuf};
 
 use anyhow::{bail, ensure};
+use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
 use photosurface::{Format, Stage, destination, step_label};
 
 use super::messages::Verbosity;
+
+/// As `export` writes them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum FileFormat {
+    Glb,
+    Gltf,
+    Ply,
+}
+
+impl FileFormat {
+    /// Of the names of its files.
+    pub(super) fn extension(self) -> &'static str {
+        match self {
+            Self::Glb => "glb",
+            Self::Gltf => "gltf",
+            Self::Ply => "ply",
+        }
+    }
+
+    pub(super) fn of_extension(extension: &str) -> Option<Self> {
+        let all = Self::value_variants().iter().copied();
+        all.into_iter()
+            .find(|format| format.extension() == extension)
+    }
+}
+
+impl From<FileFormat> for Format {
+    fn from(format: FileFormat) -> Self {
+        match format {
+            FileFormat::Glb => Self::Glb,
+            FileFormat::Gltf => Self::Gltf,
+            FileFormat::Ply => Self::Ply,
+        }
+    }
+}
 
 /// Whether a name means stdout.
 pub(super) fn is_stdout(path: &Path) -> bool {
