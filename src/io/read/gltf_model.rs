@@ -144,6 +144,14 @@ fn read_node(
     };
     let mut pieces = vec![];
     let mut points_and_lines = 0;
+    let named = root.meshes[mesh].name.as_ref();
+    if root.meshes[mesh].primitives.is_empty() {
+        let place = match named {
+            Some(name) => format!("meshes[{mesh}] (mesh {name:?})"),
+            None => format!("meshes[{mesh}]"),
+        };
+        add_note(notes, Note::Empty { place });
+    }
     for (p, primitive) in root.meshes[mesh].primitives.iter().enumerate() {
         if !is_surface(primitive.mode.unwrap()) {
             points_and_lines += 1;
@@ -152,7 +160,6 @@ fn read_node(
         if transforms.is_empty() {
             continue;
         }
-        let named = root.meshes[mesh].name.as_ref();
         let source = Source {
             document,
             primitive,

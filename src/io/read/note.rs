@@ -81,7 +81,7 @@ pub enum Note {
         /// How often it occurs.
         count: usize,
     },
-    /// A primitive without a triangle.
+    /// A primitive without a triangle, or a mesh without a primitive.
     Empty {
         /// Which one.
         place: String,
