@@ -300,6 +300,22 @@ fn the_marker_is_told_beside_the_triangles() {
     assert!(run.stderr.contains(" triangles and the marker, "), "{run}");
 }
 
+/// A note for each material would hide the one that matters.
+#[test]
+fn what_is_said_of_many_things_of_a_file_is_said_once() {
+    let workplace = Workplace::new();
+    let faces = "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\nusemtl d\nf 1 2 3\n";
+    workplace.write("many.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{faces}"));
+    let run = workplace.run("check many.obj").success();
+    let notes: Vec<_> = run.stderr.lines().collect();
+    assert_eq!(notes.len(), 1, "{run}");
+    assert!(
+        notes[0].starts_with("note: many.obj: material \"a\""),
+        "{run}"
+    );
+    assert!(notes[0].ends_with(", and so 3 more materials"), "{run}");
+}
+
 #[cfg(unix)]
 #[test]
 fn an_unwritable_directory_is_told_before_any_work() {

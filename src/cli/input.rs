@@ -124,7 +124,7 @@ impl Reading<'_> {
         let (models, found) = read.with_context(|| place.clone())?;
         let mut files: Vec<PathBuf> = path.map(Path::to_owned).into_iter().collect();
         for (file, findings) in found {
-            for note in findings.notes {
+            for note in findings.lines() {
                 self.verbosity
                     .note(format_args!("{}: {note}", file.display()));
             }
@@ -149,7 +149,7 @@ impl Reading<'_> {
         path: Option<&Path>,
     ) -> anyhow::Result<Input> {
         let place = path.map_or("stdin".into(), |path| path.display().to_string());
-        for note in &findings.notes {
+        for note in findings.lines() {
             self.verbosity.note(format_args!("{place}: {note}"));
         }
         let source = Source::File(path.unwrap_or(Path::new("-")).to_owned());

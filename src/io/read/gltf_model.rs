@@ -15,7 +15,7 @@ use super::materials::Materials;
 use super::names::tell_apart;
 use super::nodes::{self, Tree, node_name, read_tree};
 use super::normals::replace_zero_normals;
-use super::note::{Note, add_note, plural, unique};
+use super::note::{Note, add_note, lines, plural, unique};
 use super::primitive::{Source, read_primitive};
 use super::uri::Folder;
 use super::{AccessorProblem, Findings, NodeProblem, ReadError, checked, extensions};
@@ -316,6 +316,8 @@ fn content(root: &Root, notes: &[Note]) -> String {
                 | Note::Flat { .. }
         )
     });
-    let skipped: String = skipped.map(|note| format!("; {note}")).collect();
+    let skipped: Vec<Note> = skipped.cloned().collect();
+    let skipped = lines(&skipped).into_iter().map(|line| format!("; {line}"));
+    let skipped: String = skipped.collect();
     format!("{nodes} and {meshes}{skipped}")
 }
