@@ -380,6 +380,19 @@ fn what_cannot_be_plotted_is_told_all_the_same() {
 }
 
 #[test]
+fn a_study_of_what_is_at_rest_says_so() {
+    let workplace = Workplace::with_ball();
+    let line = "cost square.obj --only meshes --tolerances 1e-1 --samples 10 --repeats 1";
+    for (flags, is_said) in [("", true), ("--beta 0.5", false)] {
+        let run = workplace.run(&format!("{line} {flags}")).success();
+        let says = run
+            .stderr
+            .contains("nothing moves relative to the observer");
+        assert_eq!(says, is_said, "{run}");
+    }
+}
+
+#[test]
 fn errors_name_the_flag() {
     let workplace = Workplace::new();
     for (flags, words) in [

@@ -2,7 +2,6 @@
 
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use anyhow::{Context, bail, ensure};
 use photosurface::{
@@ -165,11 +164,10 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     check_destinations(files.cloned(), &input.files)?;
 
     let settings = args.settings(&input)?;
-    let pictures = settings.rays.as_ref();
-    // With the references.
-    let pictures = pictures.map_or(0, |rays| rays.samples.len() + 1);
-    let progress = progress_bar(settings.tolerances.len() + pictures, "done", verbosity);
-    progress.enable_steady_tick(Duration::from_millis(200));
+    if !settings.tolerances.is_empty() {
+        tell_of_rest(&input, verbosity);
+    }
+    let progress = progress_bar(settings.pieces(), "runs", verbosity);
     let study = CostStudy::new(&input.scene, &input.models, &settings, || progress.inc(1));
     progress.finish_and_clear();
     if let Some(rays) = &settings.rays {
@@ -323,6 +321,18 @@ impl OutputArgs {
                 path.display()
             ),
         }
+    }
+}
+
+/// Without a speed there is little to study.
+fn tell_of_rest(input: &Input, verbosity: Verbosity) {
+    let stage = Stage::new(input.scene.clone(), input.models.clone());
+    let is_at_rest = |object| stage.relative_velocity(object).rapidity() == 0.0;
+    if input.scene.objects().iter().all(is_at_rest) {
+        verbosity.note(
+            "nothing moves relative to the observer: each photosurface is the shape itself; give a speed, such as \
+             --beta 0.9, to see what one costs",
+        );
     }
 }
 

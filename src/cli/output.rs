@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::io::{IsTerminal, stderr};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use anyhow::{bail, ensure};
 use clap::ValueEnum;
@@ -135,8 +136,12 @@ pub(super) fn progress_bar(length: usize, things: &str, verbosity: Verbosity) ->
     if verbosity.is_quiet() || !stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let style =
-        ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {things} {{eta}}"))
-            .expect("the template is well-formed");
-    ProgressBar::new(length as u64).with_style(style)
+    let style = ProgressStyle::with_template(&format!(
+        "{{spinner}} {{bar:40}} {{pos}}/{{len}} {things} {{eta}}"
+    ))
+    .expect("the template is well-formed");
+    let bar = ProgressBar::new(length as u64).with_style(style);
+    // One thing may take a minute, in which there is to be seen that it goes on.
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
 }

@@ -86,12 +86,16 @@ impl Seconds {
     }
 }
 
-/// Studies one tolerance.
+/// What is measured of each tolerance beside its runs: the error, and uniform subdivision.
+pub(super) const MEASUREMENTS: usize = 2;
+
+/// Studies one tolerance; `done` is called after each run and each measurement.
 pub(super) fn mesh_cost(
     scene: &Scene,
     models: &[Model],
     tolerance: Tolerance,
     settings: &CostSettings,
+    mut done: impl FnMut(),
 ) -> Result<MeshCost, StudyError> {
     let stage = Stage::new(
         scene.clone().with_tolerance_for_all(tolerance),
@@ -112,15 +116,18 @@ pub(super) fn mesh_cost(
         made: None,
     };
     if predicted_triangles > settings.most_triangles as f64 {
+        (0..settings.repeats.get() + MEASUREMENTS).for_each(|_| done());
         return Ok(cost);
     }
     let stage = stage.granting(wanted, settings.most_triangles);
     let counts_memory = restart_peak();
     let first = run(&stage, wanted, tolerance)?;
     let peak_memory_bytes = counts_memory.then(peak_bytes).flatten();
+    done();
     let mut times = vec![first.seconds];
     for _ in 1..settings.repeats.get() {
         times.push(run(&stage, wanted, tolerance)?.seconds);
+        done();
     }
     let certificates = || first.facts.iter().map(|facts| &facts.certificate);
     let triangles = certificates().map(|c| c.triangles_out).sum();
@@ -131,6 +138,14 @@ pub(super) fn mesh_cost(
         of_tolerance,
         of_bound,
     } = measure(&stage, wanted, triangles, settings.samples.get());
+    done();
+    let uniform = uniform_cost(
+        &stage,
+        wanted,
+        settings.most_uniform_triangles,
+        settings.samples.get(),
+    );
+    done();
     cost.made = Some(Made {
         triangles,
         triangles_in: certificates().map(|c| c.triangles_in).sum(),
@@ -149,12 +164,7 @@ pub(super) fn mesh_cost(
         error: number * of_tolerance,
         error_length: length,
         error_over_bound: of_bound,
-        uniform: uniform_cost(
-            &stage,
-            wanted,
-            settings.most_uniform_triangles,
-            settings.samples.get(),
-        ),
+        uniform,
     });
     Ok(cost)
 }
