@@ -54,7 +54,8 @@ pub(super) struct CameraArgs {
     /// is in the picture]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     from: Option<DVec3>,
-    /// Show all steps on one sheet: what the observer sees above, the photosurface from outside below, at one scale
+    /// Show all steps on one sheet, a column for each: above, what the observer sees, with its proper time; below, the
+    /// photosurface from outside, at one scale
     #[arg(long, conflicts_with_all = ["view", "look", "target", "full_sky"])]
     pub(super) sheet: bool,
     /// Show the photosurfaces of all steps in one picture (--view outside)
