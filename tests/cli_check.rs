@@ -1,4 +1,4 @@
-//! `photosurface check` and what `export` says: one foretells what the other makes, and how it ends.
+//! `photosurface check` and what `export` says: one predicts what the other makes, and how it ends.
 
 mod common;
 

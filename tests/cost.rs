@@ -80,8 +80,8 @@ fn cost_follows_theory() {
         assert!(made("triangles") * 4.0 < 300_000.0, "{row:#}");
         assert!(made("error") > made("gap") / 3.0, "{row:#}");
         assert!(made("bound_length") == made("bound"), "{row:#}");
-        let foretold = number(row, "/predicted_triangles") / made("triangles");
-        assert!((0.67..1.5).contains(&foretold), "{row:#}");
+        let predicted = number(row, "/predicted_triangles") / made("triangles");
+        assert!((0.67..1.5).contains(&predicted), "{row:#}");
     }
     for pair in rows.windows(2) {
         let both = |place| (number(&pair[0], place), number(&pair[1], place));
@@ -170,7 +170,7 @@ fn angles_are_proven_and_measured_as_angles() {
     }
 }
 
-/// On every built-in scene, what is foretold is what `check` foretells, and nothing measured is beyond what is proven.
+/// On every built-in scene, what is predicted is what `check` predicts, and nothing measured is beyond what is proven.
 #[test]
 fn built_in_scenes_keep_their_bounds() {
     let workplace = Workplace::new();
@@ -182,8 +182,8 @@ fn built_in_scenes_keep_their_bounds() {
             assert_consistent(row);
             let check = workplace.run(&format!("check --example {scene} --tolerance {tolerance}"));
             let table = check.success().stdout_text().replace(',', "");
-            let foretold = format!("about {:.0} triangles", number(row, "/predicted_triangles"));
-            assert!(table.contains(&foretold), "{foretold}\n{table}");
+            let predicted = format!("about {:.0} triangles", number(row, "/predicted_triangles"));
+            assert!(table.contains(&predicted), "{predicted}\n{table}");
         }
     }
 }

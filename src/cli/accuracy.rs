@@ -166,7 +166,7 @@ impl AccuracyArgs {
         (stage, predictions)
     }
 
-    /// Whether predictions foretell that [`AccuracyArgs::is_kept`] will say yes.
+    /// Whether, by predictions, [`AccuracyArgs::is_kept`] will say yes.
     pub(super) fn will_be_kept(&self, predictions: &[Prediction]) -> bool {
         predictions.iter().all(|prediction| prediction.reachable)
     }

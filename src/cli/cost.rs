@@ -78,7 +78,7 @@ struct MeshArgs {
     /// angles in degrees (deg:0.02), all of one kind [default: 1e-1,1e-2,1e-3,1e-4,1e-5,1e-6]
     #[arg(long, value_name = "T,T,...", value_delimiter = ',', value_parser = tolerance, allow_hyphen_values = true)]
     tolerances: Vec<Tolerance>,
-    /// Tolerances that would take more triangles, all photosurfaces together, are foretold and not carried out
+    /// Tolerances that would take more triangles, all photosurfaces together, are predicted and not carried out
     /// [default: 3000000]
     #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
     max_triangles: Option<u64>,
@@ -347,7 +347,7 @@ fn tell(study: &CostStudy, max_triangles: u64, verbosity: Verbosity) {
     if left_out > 0 {
         let are = if left_out == 1 { "is" } else { "are" };
         verbosity.note(format_args!(
-            "{} would take more than --max-triangles {} and {are} foretold alone",
+            "{} would take more than --max-triangles {} and {are} only predicted",
             if left_out == 1 {
                 "1 tolerance".to_owned()
             } else {

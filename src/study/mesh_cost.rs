@@ -21,11 +21,11 @@ use crate::tessellate::Precision;
 pub struct MeshCost {
     /// Asked for: in the unit that the study says.
     pub tolerance: f64,
-    /// About how many triangles were foretold.
+    /// About how many triangles were predicted.
     pub predicted_triangles: f64,
-    /// Whether it was foretold that the tolerance can be kept.
+    /// Whether it was predicted that the tolerance can be kept.
     pub reachable: bool,
-    /// What came out; `None` where more triangles were foretold than the study may make.
+    /// What came out; `None` where more triangles were predicted than the study may make.
     pub made: Option<Made>,
 }
 
@@ -47,7 +47,7 @@ pub struct Made {
     pub file_bytes: u64,
     /// How long it took.
     pub seconds: Seconds,
-    /// The most memory that the process had in use while it foretold, made and wrote for the first time, in bytes;
+    /// The most memory that the process had in use while it predicted, made and wrote for the first time, in bytes;
     /// with what was in use before. `None` where the system does not tell.
     pub peak_memory_bytes: Option<u64>,
     /// Proven: whether all are within the tolerance.
@@ -71,7 +71,7 @@ pub struct Made {
 /// How long each stage took, by the wall clock: medians of all repeats.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Seconds {
-    /// To foretell the triangles.
+    /// To predict the triangles.
     pub predict: f64,
     /// To refine, map and prove.
     pub photosurface: f64,
@@ -176,7 +176,7 @@ struct Run {
     bytes: u64,
 }
 
-/// Foretells, makes and writes all photosurfaces of a stage, as an export does.
+/// Predicts, makes and writes all photosurfaces of a stage, as an export does.
 fn run(stage: &Stage, wanted: Wanted, tolerance: Tolerance) -> Result<Run, StudyError> {
     let start = Instant::now();
     black_box(stage.predictions(wanted));

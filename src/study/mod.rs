@@ -39,7 +39,7 @@ pub struct CostSettings {
     pub rays: Option<RaySettings>,
     /// How often each tolerance and each number of rays is carried out; times are medians.
     pub repeats: NonZeroUsize,
-    /// What would take more triangles is foretold, and not made.
+    /// What would take more triangles is predicted, and not made.
     pub most_triangles: u64,
     /// At about how many random places the error of each tolerance is measured.
     pub samples: NonZeroUsize,
