@@ -274,7 +274,7 @@ pub(super) fn tolerance(text: &str) -> anyhow::Result<Tolerance> {
     let number = |text: &str| -> anyhow::Result<f64> {
         text.trim()
             .parse()
-            .with_context(|| format!("\"{text}\" is no number"))
+            .with_context(|| format!("\"{text}\" is not a number (expected e.g. 0.5)"))
     };
     let tolerance = match text.split_once(':') {
         None => Tolerance::Relative(number(text)?),

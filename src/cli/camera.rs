@@ -361,7 +361,7 @@ pub(super) fn size(text: &str) -> anyhow::Result<PictureSize> {
     let number = |text: &str| {
         let text = text.trim();
         text.parse()
-            .with_context(|| format!("\"{text}\" is no number of pixels, expected a whole number"))
+            .with_context(|| format!("\"{text}\" is not a number of pixels (expected e.g. 640)"))
     };
     Ok(PictureSize::new(number(width)?, number(height)?)?)
 }
@@ -370,7 +370,7 @@ pub(super) fn size(text: &str) -> anyhow::Result<PictureSize> {
 pub(super) fn samples(text: &str) -> anyhow::Result<NonZeroU32> {
     let number = text.trim().parse().ok();
     let number = number.filter(|number: &NonZeroU32| number.get() <= 16);
-    number.with_context(|| format!("\"{text}\" is no number of rays, expected 1 to 16"))
+    number.with_context(|| format!("\"{text}\" is not a number of rays (expected 1 to 16)"))
 }
 
 /// `#rrggbb`

@@ -378,7 +378,7 @@ fn plot_size(text: &str) -> anyhow::Result<PlotSize> {
         .context("expected WxH, such as 960x480")?;
     let pixels = |side: &str| {
         side.parse::<u32>()
-            .with_context(|| format!("\"{side}\" is no number of pixels"))
+            .with_context(|| format!("\"{side}\" is not a number of pixels (expected e.g. 960)"))
     };
     Ok(PlotSize::new(pixels(sides.0)?, pixels(sides.1)?)?)
 }

@@ -424,7 +424,7 @@ impl OutputArgs {
         );
         ensure!(
             !(to_stdout && stdout().is_terminal()),
-            "a GLB or a PLY is no text for a terminal; send stdout to a file or a pipe"
+            "a GLB or a PLY is not text for a terminal; send stdout to a file or a pipe"
         );
         Ok(())
     }

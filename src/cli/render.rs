@@ -136,7 +136,7 @@ fn check_output(output: Option<&Path>) -> anyhow::Result<()> {
     if is_stdout(path) {
         ensure!(
             !stdout().is_terminal(),
-            "a PNG is no text for a terminal; send stdout to a file or a pipe"
+            "a PNG is not text for a terminal; send stdout to a file or a pipe"
         );
         return Ok(());
     }
