@@ -166,23 +166,29 @@ impl AccuracyArgs {
         (stage, predictions)
     }
 
-    /// Whether predictions foretell that [`AccuracyArgs::is_kept`] will say yes.
+    /// Whether, by predictions, [`AccuracyArgs::is_kept`] will say yes.
     pub(super) fn will_be_kept(&self, predictions: &[Prediction]) -> bool {
         predictions.iter().all(|prediction| prediction.reachable)
-            && predicted(predictions).round() <= self.max_triangles() as f64
     }
 
-    /// Whether the photosurfaces are within their tolerances and the budget; says so where they are not.
-    pub(super) fn is_kept(&self, made: &Tally, verbosity: Verbosity) -> bool {
-        let within_budget = made.triangles as u64 <= self.max_triangles();
-        if !within_budget {
+    /// Says so where a source alone has more triangles than the budget.
+    pub(super) fn tell_beyond_budget(&self, triangles: f64, verbosity: Verbosity) {
+        if triangles.round() > self.max_triangles() as f64 {
             verbosity.note(format_args!(
                 "{} triangles are more than --max-triangles {}: those that there are before any subdivision stay",
-                grouped(made.triangles),
+                grouped_number(triangles),
                 grouped(self.max_triangles() as usize)
             ));
         }
-        made.all_certified(verbosity) && within_budget
+    }
+
+    /// Whether the photosurfaces are within their tolerances; says so where they are not, or are beyond the budget.
+    ///
+    /// A source that is larger than the budget is one that the budget is not about: it is told, and certificates alone
+    /// say what is proven.
+    pub(super) fn is_kept(&self, made: &Tally, verbosity: Verbosity) -> bool {
+        self.tell_beyond_budget(made.triangles as f64, verbosity);
+        made.all_certified(verbosity)
     }
 }
 
@@ -202,7 +208,7 @@ pub(super) fn grouped_number(number: f64) -> String {
     }
 }
 
-fn predicted(predictions: &[Prediction]) -> f64 {
+pub(super) fn predicted(predictions: &[Prediction]) -> f64 {
     let triangles = predictions.iter().map(|prediction| prediction.triangles);
     triangles.sum()
 }
@@ -268,7 +274,7 @@ pub(super) fn tolerance(text: &str) -> anyhow::Result<Tolerance> {
     let number = |text: &str| -> anyhow::Result<f64> {
         text.trim()
             .parse()
-            .with_context(|| format!("\"{text}\" is no number"))
+            .with_context(|| format!("\"{text}\" is not a number (expected e.g. 0.5)"))
     };
     let tolerance = match text.split_once(':') {
         None => Tolerance::Relative(number(text)?),

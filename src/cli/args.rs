@@ -160,7 +160,7 @@ fn steps(text: &str) -> anyhow::Result<Steps> {
     let count = count.trim();
     let count = count
         .parse()
-        .with_context(|| format!("\"{count}\" is no count, expected a whole number"))?;
+        .with_context(|| format!("\"{count}\" is not a count (expected e.g. 7)"))?;
     Ok(Steps(even_steps(number(from)?, number(to)?, count)?))
 }
 
@@ -172,7 +172,7 @@ pub(super) fn number(text: &str) -> anyhow::Result<f64> {
     let text = text.trim();
     let number: f64 = text
         .parse()
-        .with_context(|| format!("\"{text}\" is no number, expected one such as 0.5"))?;
+        .with_context(|| format!("\"{text}\" is not a number (expected e.g. 0.5)"))?;
     ensure!(number.is_finite(), "{text} is not finite");
     Ok(number)
 }
@@ -233,7 +233,7 @@ mod tests {
             vector("1,2,x")
                 .unwrap_err()
                 .to_string()
-                .contains("\"x\" is no number")
+                .contains("\"x\" is not a number")
         );
         assert!(vector("1,2,inf").is_err());
         assert_eq!(steps("-1,0.5").unwrap().0, [-1.0, 0.5]);

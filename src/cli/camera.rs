@@ -54,7 +54,8 @@ pub(super) struct CameraArgs {
     /// is in the picture]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     from: Option<DVec3>,
-    /// Show all steps on one sheet: what the observer sees above, the photosurface from outside below, at one scale
+    /// Show all steps on one sheet, a column for each: above, what the observer sees, with its proper time; below, the
+    /// photosurface from outside, at one scale
     #[arg(long, conflicts_with_all = ["view", "look", "target", "full_sky"])]
     pub(super) sheet: bool,
     /// Show the photosurfaces of all steps in one picture (--view outside)
@@ -360,7 +361,7 @@ pub(super) fn size(text: &str) -> anyhow::Result<PictureSize> {
     let number = |text: &str| {
         let text = text.trim();
         text.parse()
-            .with_context(|| format!("\"{text}\" is no number of pixels, expected a whole number"))
+            .with_context(|| format!("\"{text}\" is not a number of pixels (expected e.g. 640)"))
     };
     Ok(PictureSize::new(number(width)?, number(height)?)?)
 }
@@ -369,7 +370,7 @@ pub(super) fn size(text: &str) -> anyhow::Result<PictureSize> {
 pub(super) fn samples(text: &str) -> anyhow::Result<NonZeroU32> {
     let number = text.trim().parse().ok();
     let number = number.filter(|number: &NonZeroU32| number.get() <= 16);
-    number.with_context(|| format!("\"{text}\" is no number of rays, expected 1 to 16"))
+    number.with_context(|| format!("\"{text}\" is not a number of rays (expected 1 to 16)"))
 }
 
 /// `#rrggbb`

@@ -6,18 +6,19 @@ use anyhow::Context;
 use photosurface::{Format, Prediction, Stage};
 
 use super::Status;
-use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, total};
+use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, predicted, total};
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print_if_open, shown};
+use super::output::{FileFormat, check_range};
 
 /// Validate a scene or a mesh, and say what an export would make
 ///
 /// Reads everything that an export would read and prints, for every object, its parts, how fast it moves relative to
 /// the observer, how many triangles there are before refinement and about how many its photosurfaces take, both of all
 /// steps together, and whether they will be certified to be within the tolerance.
-/// Makes and writes nothing. Exit status: 0 where that of the export will be 0, 1 where it will be 1 (not certified, or
-/// more triangles than --max-triangles), 2 an error, 130 interrupted.
+/// Makes and writes nothing. Exit status: 0 where that of the export will be 0, 1 where it will be 1 (not certified), 2 an
+/// error, 130 interrupted.
 #[derive(Debug, clap::Args)]
 pub(super) struct CheckArgs {
     #[command(flatten)]
@@ -40,24 +41,6 @@ pub(super) struct CheckArgs {
     verbose: bool,
 }
 
-/// As `export` writes them.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum FileFormat {
-    Glb,
-    Gltf,
-    Ply,
-}
-
-impl From<FileFormat> for Format {
-    fn from(format: FileFormat) -> Self {
-        match format {
-            FileFormat::Glb => Self::Glb,
-            FileFormat::Gltf => Self::Gltf,
-            FileFormat::Ply => Self::Ply,
-        }
-    }
-}
-
 pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
     let format = Format::from(args.format);
     let mut status = Status::Done;
@@ -75,11 +58,13 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
         if let Err(error) = format.least_size(&stage, stage.scene().steps().len()) {
             verbosity.note(format_args!("{}: {error}", input.place));
         }
-        let range = format.check_range(&stage);
+        let range = check_range(format, &stage);
         range.with_context(|| input.place.clone())?;
         let wanted = args.accuracy.wanted_in(format, stage.scene());
         let (stage, predictions) = args.accuracy.within_budget(stage, wanted, verbosity);
         print_if_open(|out| table(&stage, &predictions, out))?;
+        args.accuracy
+            .tell_beyond_budget(predicted(&predictions), verbosity);
         if !args.accuracy.will_be_kept(&predictions) {
             status = Status::NotCertified;
         }

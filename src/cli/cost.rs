@@ -2,7 +2,6 @@
 
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use anyhow::{Context, bail, ensure};
 use photosurface::{
@@ -79,7 +78,7 @@ struct MeshArgs {
     /// angles in degrees (deg:0.02), all of one kind [default: 1e-1,1e-2,1e-3,1e-4,1e-5,1e-6]
     #[arg(long, value_name = "T,T,...", value_delimiter = ',', value_parser = tolerance, allow_hyphen_values = true)]
     tolerances: Vec<Tolerance>,
-    /// Tolerances that would take more triangles, all photosurfaces together, are foretold and not carried out
+    /// Tolerances that would take more triangles, all photosurfaces together, are predicted and not carried out
     /// [default: 3000000]
     #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
     max_triangles: Option<u64>,
@@ -165,11 +164,10 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     check_destinations(files.cloned(), &input.files)?;
 
     let settings = args.settings(&input)?;
-    let pictures = settings.rays.as_ref();
-    // With the references.
-    let pictures = pictures.map_or(0, |rays| rays.samples.len() + 1);
-    let progress = progress_bar(settings.tolerances.len() + pictures, "done", verbosity);
-    progress.enable_steady_tick(Duration::from_millis(200));
+    if !settings.tolerances.is_empty() {
+        tell_of_rest(&input, verbosity);
+    }
+    let progress = progress_bar(settings.pieces(), "runs", verbosity);
     let study = CostStudy::new(&input.scene, &input.models, &settings, || progress.inc(1));
     progress.finish_and_clear();
     if let Some(rays) = &settings.rays {
@@ -326,6 +324,18 @@ impl OutputArgs {
     }
 }
 
+/// Without a speed there is little to study.
+fn tell_of_rest(input: &Input, verbosity: Verbosity) {
+    let stage = Stage::new(input.scene.clone(), input.models.clone());
+    let is_at_rest = |object| stage.relative_velocity(object).rapidity() == 0.0;
+    if input.scene.objects().iter().all(is_at_rest) {
+        verbosity.note(
+            "nothing moves relative to the observer: each photosurface is the shape itself; give a speed, such as \
+             --beta 0.9, to see what one costs",
+        );
+    }
+}
+
 /// What the numbers alone do not say.
 fn tell(study: &CostStudy, max_triangles: u64, verbosity: Verbosity) {
     let made: Vec<&Made> = study
@@ -337,7 +347,7 @@ fn tell(study: &CostStudy, max_triangles: u64, verbosity: Verbosity) {
     if left_out > 0 {
         let are = if left_out == 1 { "is" } else { "are" };
         verbosity.note(format_args!(
-            "{} would take more than --max-triangles {} and {are} foretold alone",
+            "{} would take more than --max-triangles {} and {are} only predicted",
             if left_out == 1 {
                 "1 tolerance".to_owned()
             } else {
@@ -368,7 +378,7 @@ fn plot_size(text: &str) -> anyhow::Result<PlotSize> {
         .context("expected WxH, such as 960x480")?;
     let pixels = |side: &str| {
         side.parse::<u32>()
-            .with_context(|| format!("\"{side}\" is no number of pixels"))
+            .with_context(|| format!("\"{side}\" is not a number of pixels (expected e.g. 960)"))
     };
     Ok(PlotSize::new(pixels(sides.0)?, pixels(sides.1)?)?)
 }

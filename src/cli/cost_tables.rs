@@ -11,7 +11,7 @@ use super::messages::{counted, grouped, size};
 
 const MESH_HEADINGS: [&str; 13] = [
     "tolerance",
-    "foretold",
+    "predicted",
     "triangles",
     "least",
     "ratio",

@@ -22,8 +22,8 @@ use super::args::{InputArgs, ObserverArgs, number};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print, size, stdout_is_closed};
 use super::output::{
-    check_destinations, extension, file_for_each, from_first_to_last, is_stdout, progress_bar,
-    with_suffix,
+    FileFormat, check_destinations, check_range, extension, file_for_each, from_first_to_last,
+    is_stdout, progress_bar, with_suffix,
 };
 
 /// Write photosurfaces as meshes
@@ -64,9 +64,13 @@ pub(super) struct ExportArgs {
 #[command(next_help_heading = "Output")]
 struct OutputArgs {
     /// Where to write: .glb, .gltf (with its data beside it in NAME-DIGEST.bin) or .ply (double precision, all in one mesh, the
-    /// Doppler factor as quality); - writes GLB to stdout [default: NAME_photosurface.glb in this directory]
+    /// Doppler factor as quality); - for stdout, to which a GLB goes unless --format says otherwise [default:
+    /// NAME_photosurface.glb in this directory]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// What to write where no name of a file says it: to stdout glb or ply [default: glb]
+    #[arg(long, value_enum)]
+    format: Option<FileFormat>,
     /// Write a file for each step: out_step000.glb, out_step001.glb, ...
     #[arg(long)]
     split: bool,
@@ -157,7 +161,7 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
         format
             .least_size(&stage, if output.split { 1 } else { steps })
             .with_context(of_file)?;
-        format.check_range(&stage).with_context(of_file)?;
+        check_range(format, &stage).with_context(of_file)?;
         if index == 0 && format != Format::Ply {
             tell_replaced_names(&stage, &path, args.verbosity);
         }
@@ -335,21 +339,33 @@ impl Work<'_> {
 
 impl OutputArgs {
     fn format(&self) -> anyhow::Result<Format> {
+        let wanted = self.format.unwrap_or(FileFormat::Glb);
         let Some(path) = &self.output else {
-            return Ok(Format::Glb);
+            return Ok(wanted.into());
         };
         if is_stdout(path) {
-            return Ok(Format::Glb);
+            ensure!(
+                wanted != FileFormat::Gltf,
+                "--format gltf: the data of a .gltf is a file beside it, which stdout has no place for; expected glb or ply"
+            );
+            return Ok(wanted.into());
         }
-        match extension(path).as_deref() {
-            Some("glb") => Ok(Format::Glb),
-            Some("gltf") => Ok(Format::Gltf),
-            Some("ply") => Ok(Format::Ply),
-            _ => bail!(
+        let of_name = extension(path);
+        let of_name = of_name.and_then(|extension| FileFormat::of_extension(&extension));
+        let Some(of_name) = of_name else {
+            bail!(
                 "{}: unknown extension, expected .glb, .gltf or .ply",
                 path.display()
-            ),
-        }
+            );
+        };
+        ensure!(
+            self.format.is_none_or(|format| format == of_name),
+            "{}: is .{} by its name and .{} by --format; leave out --format, or give the name that extension",
+            path.display(),
+            of_name.extension(),
+            wanted.extension()
+        );
+        Ok(of_name.into())
     }
 
     /// How the steps are shown one after another, if that is asked for and there is something to show.
@@ -408,7 +424,7 @@ impl OutputArgs {
         );
         ensure!(
             !(to_stdout && stdout().is_terminal()),
-            "a GLB is no text for a terminal; send stdout to a file or a pipe"
+            "a GLB or a PLY is not text for a terminal; send stdout to a file or a pipe"
         );
         Ok(())
     }
@@ -416,7 +432,10 @@ impl OutputArgs {
     fn path(&self, name: &str) -> PathBuf {
         match &self.output {
             Some(path) => path.clone(),
-            None => PathBuf::from(format!("{name}_photosurface.glb")),
+            None => {
+                let format = self.format.unwrap_or(FileFormat::Glb);
+                PathBuf::from(format!("{name}_photosurface.{}", format.extension()))
+            }
         }
     }
 
@@ -474,7 +493,12 @@ fn write_file(
     before_it_appears: impl FnOnce(&Work<'_>) -> Result<(), WriteError>,
 ) -> anyhow::Result<()> {
     if is_stdout(path) {
-        print(|out| Ok(work.glb(steps, Target::Stream(out))?))?;
+        print(|out| {
+            Ok(match format {
+                Format::Ply => work.ply(steps, out)?,
+                Format::Glb | Format::Gltf => work.glb(steps, Target::Stream(out))?,
+            })
+        })?;
         return Ok(before_it_appears(work)?);
     }
     match format {

@@ -69,6 +69,21 @@ impl GuideArgs {
         self.axes || self.scale_bar || !self.ghost.is_empty()
     }
 
+    /// What the colours of guides mean, of those that are asked for.
+    pub(super) fn legend(&self) -> Vec<&'static str> {
+        let ghosts = [
+            (Ghost::Rest, "blue, the shape at rest"),
+            (Ghost::Contracted, "orange, contracted by its motion"),
+        ];
+        let ghosts = ghosts.into_iter();
+        let asked_for = ghosts.filter(|(ghost, _)| self.ghost.contains(ghost));
+        let mut legend: Vec<_> = asked_for.map(|(_, words)| words).collect();
+        if self.axes {
+            legend.push("axes, x red, y green, z blue");
+        }
+        legend
+    }
+
     /// Adds the ghosts of one step; their edges, to be drawn, and all places of them.
     pub(super) fn ghosts(
         &self,

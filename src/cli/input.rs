@@ -124,7 +124,7 @@ impl Reading<'_> {
         let (models, found) = read.with_context(|| place.clone())?;
         let mut files: Vec<PathBuf> = path.map(Path::to_owned).into_iter().collect();
         for (file, findings) in found {
-            for note in findings.notes {
+            for note in findings.lines() {
                 self.verbosity
                     .note(format_args!("{}: {note}", file.display()));
             }
@@ -149,7 +149,7 @@ impl Reading<'_> {
         path: Option<&Path>,
     ) -> anyhow::Result<Input> {
         let place = path.map_or("stdin".into(), |path| path.display().to_string());
-        for note in &findings.notes {
+        for note in findings.lines() {
             self.verbosity.note(format_args!("{place}: {note}"));
         }
         let source = Source::File(path.unwrap_or(Path::new("-")).to_owned());
@@ -243,13 +243,13 @@ fn scene_from_stdin(bytes: &[u8]) -> anyhow::Result<Scene> {
     let text = text.trim_ascii_start();
     ensure!(
         text.starts_with(b"{") || text.starts_with(b"["),
-        "{EXPECTED}, this is neither; name a file to read .obj or .gltf"
+        "{EXPECTED}, this is neither; an .obj or a .gltf is read from a file: give its name in place of -"
     );
     let json = serde_json::from_slice::<serde_json::Value>(text);
     let is_gltf = json.is_ok_and(|json| json.get("asset").is_some());
     ensure!(
         !is_gltf,
-        "{EXPECTED}, this is a .gltf; name its file, for it refers to others"
+        "{EXPECTED}, this is a .gltf, which refers to other files: give its name in place of -"
     );
     scene_from_bytes(bytes).context("stdin")
 }

@@ -19,6 +19,7 @@ mod studio;
 
 use std::process::ExitCode;
 
+use anyhow::Context;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Parser, Subcommand, ValueEnum};
 
@@ -72,7 +73,12 @@ const BROKEN_PIPE: u8 = 141;
 
 /// Runs the command line of this process.
 pub(crate) fn run() -> ExitCode {
-    let cli = Cli::try_parse().unwrap_or_else(|error| advised(error).exit());
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) if error.use_stderr() => advised(error).exit(),
+        // Help and the version are results like any other.
+        Err(asked_for) => return ended(print_help(&asked_for)),
+    };
     // A handler that cannot be set leaves the system's own, which ends the program too.
     let _ = ctrlc::set_handler(|| {
         photosurface::abandon_writes();
@@ -86,6 +92,17 @@ pub(crate) fn run() -> ExitCode {
         Command::Example(args) => example::run(&args).map(|()| Status::Done),
         Command::Schema(args) => schema::run(&args).map(|()| Status::Done),
     };
+    ended(done)
+}
+
+/// Prints what was asked for in place of a command.
+fn print_help(help: &clap::Error) -> anyhow::Result<Status> {
+    messages::print(|_| help.print().context("stdout"))?;
+    Ok(Status::Done)
+}
+
+/// Says why there is no result, if there is none; the exit status.
+fn ended(done: anyhow::Result<Status>) -> ExitCode {
     match done {
         Ok(Status::Done) => ExitCode::SUCCESS,
         Ok(Status::NotCertified) => ExitCode::from(NOT_CERTIFIED),

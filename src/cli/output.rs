@@ -1,15 +1,52 @@
 //! Where results go: names of files, what must not be written over, how far the work has got.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::fs;
 use std::io::{IsTerminal, stderr};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use anyhow::{bail, ensure};
+use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
-use photosurface::{destination, step_label};
+use photosurface::{Format, Stage, destination, step_label};
 
 use super::messages::Verbosity;
+
+/// As `export` writes them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum FileFormat {
+    Glb,
+    Gltf,
+    Ply,
+}
+
+impl FileFormat {
+    /// Of the names of its files.
+    pub(super) fn extension(self) -> &'static str {
+        match self {
+            Self::Glb => "glb",
+            Self::Gltf => "gltf",
+            Self::Ply => "ply",
+        }
+    }
+
+    pub(super) fn of_extension(extension: &str) -> Option<Self> {
+        let all = Self::value_variants().iter().copied();
+        all.into_iter()
+            .find(|format| format.extension() == extension)
+    }
+}
+
+impl From<FileFormat> for Format {
+    fn from(format: FileFormat) -> Self {
+        match format {
+            FileFormat::Glb => Self::Glb,
+            FileFormat::Gltf => Self::Gltf,
+            FileFormat::Ply => Self::Ply,
+        }
+    }
+}
 
 /// Whether a name means stdout.
 pub(super) fn is_stdout(path: &Path) -> bool {
@@ -56,21 +93,23 @@ pub(super) fn check_destinations(
     written: impl IntoIterator<Item = PathBuf>,
     read: &[PathBuf],
 ) -> anyhow::Result<()> {
-    let read: HashSet<_> = read
+    let read: HashMap<PathBuf, &PathBuf> = read
         .iter()
-        .filter_map(|file| fs::canonicalize(file).ok())
+        .filter_map(|file| Some((fs::canonicalize(file).ok()?, file)))
         .collect();
     let mut places: HashMap<PathBuf, PathBuf> = HashMap::new();
     for file in written.into_iter().filter(|file| !is_stdout(file)) {
         let place = destination(&file)?;
-        ensure!(
-            !read.contains(&place),
-            "{}: would be written over what is read; choose another name",
-            file.display()
-        );
+        if let Some(input) = read.get(&place) {
+            bail!(
+                "the output {} would be written over the input {}; choose another name for the output",
+                file.display(),
+                input.display()
+            );
+        }
         if let Some(other) = places.get(&place) {
             bail!(
-                "{}: would be written over {}, which is an output too; choose another name",
+                "the output {} would be written over another output, {}; choose another name for one of them",
                 file.display(),
                 other.display()
             );
@@ -80,13 +119,29 @@ pub(super) fn check_destinations(
     Ok(())
 }
 
+/// Whether a file of this format can hold what is seen. Where another one could, the error says so.
+pub(super) fn check_range(format: Format, stage: &Stage) -> anyhow::Result<()> {
+    let Err(error) = format.check_range(stage) else {
+        return Ok(());
+    };
+    ensure!(
+        format == Format::Ply || Format::Ply.check_range(stage).is_err(),
+        "{error}; or write a .ply, whose 64-bit numbers hold it"
+    );
+    Err(error.into())
+}
+
 /// A bar of so many things, on a terminal.
 pub(super) fn progress_bar(length: usize, things: &str, verbosity: Verbosity) -> ProgressBar {
     if verbosity.is_quiet() || !stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let style =
-        ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {things} {{eta}}"))
-            .expect("the template is well-formed");
-    ProgressBar::new(length as u64).with_style(style)
+    let style = ProgressStyle::with_template(&format!(
+        "{{spinner}} {{bar:40}} {{pos}}/{{len}} {things} {{eta}}"
+    ))
+    .expect("the template is well-formed");
+    let bar = ProgressBar::new(length as u64).with_style(style);
+    // One thing may take a minute, in which there is to be seen that it goes on.
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
 }

@@ -108,15 +108,25 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     tell_of_missing(&input.textures, stage.scene(), verbosity);
     if !is_stdout(&files[0]) {
         verbosity.result(format_args!(
-            "{}: {}",
+            "{}: {}{}",
             from_first_to_last(&files),
-            counted(files.len(), "picture")
+            counted(files.len(), "picture"),
+            legend(args)
         ));
     }
     Ok(match args.accuracy.is_kept(&studio.tally, verbosity) {
         true => Status::Done,
         false => Status::NotCertified,
     })
+}
+
+/// What is where in a picture, and in which colour.
+fn legend(args: &RenderArgs) -> String {
+    let rows = args.camera.sheet.then_some(
+        "above, what the observer sees at each step (τ: its proper time); below, the photosurface from outside",
+    );
+    let legend = rows.into_iter().chain(args.guides.legend());
+    legend.map(|words| format!("; {words}")).collect()
 }
 
 fn check_output(output: Option<&Path>) -> anyhow::Result<()> {
@@ -126,7 +136,7 @@ fn check_output(output: Option<&Path>) -> anyhow::Result<()> {
     if is_stdout(path) {
         ensure!(
             !stdout().is_terminal(),
-            "a PNG is no text for a terminal; send stdout to a file or a pipe"
+            "a PNG is not text for a terminal; send stdout to a file or a pipe"
         );
         return Ok(());
     }

@@ -1,9 +1,9 @@
 //! What the tolerances of a scene will take, and what a budget leaves of them.
 //!
-//! Predictions steer, counts hold: aims are loosened until about as much is foretold as there is, and then each object
-//! is granted so many triangles at each step that all together are within the budget, whatever was foretold.
+//! Predictions steer, counts hold: aims are loosened until about as much is predicted as there is, and then each object
+//! is granted so many triangles at each step that all together are within the budget, whatever was predicted.
 
-use super::plan::Foresight;
+use super::plan::Predicted;
 use super::{Placed, Stage, Wanted};
 use crate::mesh::{Mesh, Part};
 use crate::tessellate::shares;
@@ -60,12 +60,12 @@ impl Stage {
         let objects = 0..self.objects.len();
         objects
             .map(|object| {
-                let foresight = self.foresee(object, wanted);
+                let predicted = self.predict(object, wanted);
                 let most = self.most_triangles(object);
                 Prediction {
-                    triangles: foresight.triangles.min(most),
-                    triangles_in: foresight.before.min(most),
-                    reachable: foresight.reachable && foresight.triangles <= most,
+                    triangles: predicted.triangles.min(most),
+                    triangles_in: predicted.before.min(most),
+                    reachable: predicted.reachable && predicted.triangles <= most,
                 }
             })
             .collect()
@@ -87,7 +87,7 @@ impl Stage {
         for placed in &mut self.objects {
             placed.granted = None;
         }
-        let needed = |stage: &Self, object| stage.foresee(object, wanted).needed();
+        let needed = |stage: &Self, object| stage.predict(object, wanted).needed();
         let mut objects: Vec<(usize, f64)> = (0..self.objects.len())
             .map(|object| (object, needed(&self, object)))
             .collect();
@@ -121,11 +121,11 @@ impl Stage {
         // What each object needs at each step beyond its source.
         let needs: Vec<Vec<f64>> = (0..self.objects.len())
             .map(|object| {
-                let foreseen = self.foresee_some(object, wanted);
+                let at_some = self.predict_some(object, wanted);
                 let need = |step: usize| {
                     let last = (steps - 1).max(1) as f64;
-                    let at = step as f64 / last * (foreseen.len() - 1) as f64;
-                    let need = foreseen[at.round() as usize].needed() - sources[object] as f64;
+                    let at = step as f64 / last * (at_some.len() - 1) as f64;
+                    let need = at_some[at.round() as usize].needed() - sources[object] as f64;
                     // Infinity and NaN are as good as all that there is.
                     if need < most as f64 {
                         need.max(0.0)
@@ -174,6 +174,11 @@ impl Stage {
     ) -> f64 {
         self.objects[object].loosening = MAX_LOOSENING;
         let least = needed(self, object);
+        if need <= least {
+            // What is there takes all of it, and is kept whatever the budget.
+            self.objects[object].loosening = 1.0;
+            return need;
+        }
         share = share.max(SPENT_AT_LEAST * least);
         let mut too_tight = 1.0;
         let mut loosening: f64 = 1.0;
@@ -204,24 +209,24 @@ impl Stage {
     }
 
     /// All steps together.
-    fn foresee(&self, object: usize, wanted: Wanted) -> Foresight {
-        let foreseen = self.foresee_some(object, wanted);
-        let each = self.scene.steps().len() as f64 / foreseen.len() as f64;
-        let mut sum = Foresight {
+    fn predict(&self, object: usize, wanted: Wanted) -> Predicted {
+        let at_some = self.predict_some(object, wanted);
+        let each = self.scene.steps().len() as f64 / at_some.len() as f64;
+        let mut sum = Predicted {
             triangles: 0.0,
             before: 0.0,
             reachable: true,
         };
-        for foresight in foreseen {
-            sum.triangles += foresight.triangles * each;
-            sum.before += foresight.before * each;
-            sum.reachable &= foresight.reachable;
+        for predicted in at_some {
+            sum.triangles += predicted.triangles * each;
+            sum.before += predicted.before * each;
+            sum.reachable &= predicted.reachable;
         }
         sum
     }
 
     /// Each step, or some of many, evenly spread.
-    fn foresee_some(&self, object: usize, wanted: Wanted) -> Vec<Foresight> {
+    fn predict_some(&self, object: usize, wanted: Wanted) -> Vec<Predicted> {
         let (object, placed) = (&self.scene.objects()[object], &self.objects[object]);
         let steps = self.scene.steps().len();
         let looked_at = steps.min(STEPS_LOOKED_AT);
@@ -231,12 +236,12 @@ impl Stage {
             Some((sketch, weights)) => (sketch, weights.clone()),
             None => (placed, vec![1.0; placed.parts.len()]),
         };
-        let foresee = |index: usize| {
+        let predict = |index: usize| {
             let step = index * (steps - 1) / (looked_at - 1).max(1);
             let plan = self.plan(object, placed, step, wanted);
-            plan.foresee(wanted, &weights)
+            plan.predict(wanted, &weights)
         };
-        (0..looked_at).map(foresee).collect()
+        (0..looked_at).map(predict).collect()
     }
 }
 
@@ -250,7 +255,7 @@ fn granted(whole: u64, needs: &[(f64, u64)]) -> Vec<u64> {
     }
     let needed = needed.into_iter().map(|need| need as u64);
     let rest = whole - all as u64;
-    // What was not foreseen may be anywhere.
+    // What was not predicted may be anywhere.
     let weights = needs
         .iter()
         .map(|&(need, source)| need + source as f64 + 1.0);
@@ -258,7 +263,7 @@ fn granted(whole: u64, needs: &[(f64, u64)]) -> Vec<u64> {
     needed.zip(rest).map(|(need, more)| need + more).collect()
 }
 
-impl Foresight {
+impl Predicted {
     /// With room for what a prediction may miss.
     fn needed(&self) -> f64 {
         self.before + PREDICTION_ROOM * (self.triangles - self.before)

@@ -1,6 +1,6 @@
 //! How one object becomes photosurfaces at one step: what is allowed, what that takes, and the doing.
 
-mod foresight;
+mod predict;
 mod together;
 
 use std::borrow::Cow;
@@ -19,7 +19,7 @@ use crate::tessellate::{
     local_stretch, nearest_point, refine, rounding_bound, survey,
 };
 
-pub(super) use foresight::Foresight;
+pub(super) use predict::Predicted;
 
 /// What part of the tolerance of a curved shape its facets may use; the rest is for the gap between them.
 ///

@@ -21,11 +21,11 @@ use crate::tessellate::Precision;
 pub struct MeshCost {
     /// Asked for: in the unit that the study says.
     pub tolerance: f64,
-    /// About how many triangles were foretold.
+    /// About how many triangles were predicted.
     pub predicted_triangles: f64,
-    /// Whether it was foretold that the tolerance can be kept.
+    /// Whether it was predicted that the tolerance can be kept.
     pub reachable: bool,
-    /// What came out; `None` where more triangles were foretold than the study may make.
+    /// What came out; `None` where more triangles were predicted than the study may make.
     pub made: Option<Made>,
 }
 
@@ -47,7 +47,7 @@ pub struct Made {
     pub file_bytes: u64,
     /// How long it took.
     pub seconds: Seconds,
-    /// The most memory that the process had in use while it foretold, made and wrote for the first time, in bytes;
+    /// The most memory that the process had in use while it predicted, made and wrote for the first time, in bytes;
     /// with what was in use before. `None` where the system does not tell.
     pub peak_memory_bytes: Option<u64>,
     /// Proven: whether all are within the tolerance.
@@ -71,7 +71,7 @@ pub struct Made {
 /// How long each stage took, by the wall clock: medians of all repeats.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Seconds {
-    /// To foretell the triangles.
+    /// To predict the triangles.
     pub predict: f64,
     /// To refine, map and prove.
     pub photosurface: f64,
@@ -86,12 +86,16 @@ impl Seconds {
     }
 }
 
-/// Studies one tolerance.
+/// What is measured of each tolerance beside its runs: the error, and uniform subdivision.
+pub(super) const MEASUREMENTS: usize = 2;
+
+/// Studies one tolerance; `done` is called after each run and each measurement.
 pub(super) fn mesh_cost(
     scene: &Scene,
     models: &[Model],
     tolerance: Tolerance,
     settings: &CostSettings,
+    mut done: impl FnMut(),
 ) -> Result<MeshCost, StudyError> {
     let stage = Stage::new(
         scene.clone().with_tolerance_for_all(tolerance),
@@ -112,15 +116,18 @@ pub(super) fn mesh_cost(
         made: None,
     };
     if predicted_triangles > settings.most_triangles as f64 {
+        (0..settings.repeats.get() + MEASUREMENTS).for_each(|_| done());
         return Ok(cost);
     }
     let stage = stage.granting(wanted, settings.most_triangles);
     let counts_memory = restart_peak();
     let first = run(&stage, wanted, tolerance)?;
     let peak_memory_bytes = counts_memory.then(peak_bytes).flatten();
+    done();
     let mut times = vec![first.seconds];
     for _ in 1..settings.repeats.get() {
         times.push(run(&stage, wanted, tolerance)?.seconds);
+        done();
     }
     let certificates = || first.facts.iter().map(|facts| &facts.certificate);
     let triangles = certificates().map(|c| c.triangles_out).sum();
@@ -131,6 +138,14 @@ pub(super) fn mesh_cost(
         of_tolerance,
         of_bound,
     } = measure(&stage, wanted, triangles, settings.samples.get());
+    done();
+    let uniform = uniform_cost(
+        &stage,
+        wanted,
+        settings.most_uniform_triangles,
+        settings.samples.get(),
+    );
+    done();
     cost.made = Some(Made {
         triangles,
         triangles_in: certificates().map(|c| c.triangles_in).sum(),
@@ -149,12 +164,7 @@ pub(super) fn mesh_cost(
         error: number * of_tolerance,
         error_length: length,
         error_over_bound: of_bound,
-        uniform: uniform_cost(
-            &stage,
-            wanted,
-            settings.most_uniform_triangles,
-            settings.samples.get(),
-        ),
+        uniform,
     });
     Ok(cost)
 }
@@ -166,7 +176,7 @@ struct Run {
     bytes: u64,
 }
 
-/// Foretells, makes and writes all photosurfaces of a stage, as an export does.
+/// Predicts, makes and writes all photosurfaces of a stage, as an export does.
 fn run(stage: &Stage, wanted: Wanted, tolerance: Tolerance) -> Result<Run, StudyError> {
     let start = Instant::now();
     black_box(stage.predictions(wanted));

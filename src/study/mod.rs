@@ -39,7 +39,7 @@ pub struct CostSettings {
     pub rays: Option<RaySettings>,
     /// How often each tolerance and each number of rays is carried out; times are medians.
     pub repeats: NonZeroUsize,
-    /// What would take more triangles is foretold, and not made.
+    /// What would take more triangles is predicted, and not made.
     pub most_triangles: u64,
     /// At about how many random places the error of each tolerance is measured.
     pub samples: NonZeroUsize,
@@ -59,6 +59,16 @@ impl Default for CostSettings {
             samples: NonZeroUsize::MIN.saturating_add(199_999),
             most_uniform_triangles: 2_000_000,
         }
+    }
+}
+
+impl CostSettings {
+    /// How often [`CostStudy::new`] calls its `done`: how far the work has got.
+    pub fn pieces(&self) -> usize {
+        let repeats = self.repeats.get();
+        let rays = self.rays.as_ref();
+        self.tolerances.len() * (repeats + mesh_cost::MEASUREMENTS)
+            + rays.map_or(0, |rays| rays.pieces(repeats))
     }
 }
 
@@ -133,8 +143,8 @@ pub enum StudyError {
 }
 
 impl CostStudy {
-    /// Studies a scene with one model for each object; `done` is called after every tolerance, after the references
-    /// of pictures and after every number of rays.
+    /// Studies a scene with one model for each object; `done` is called after every run, measurement and picture,
+    /// [`CostSettings::pieces`] times in all.
     ///
     /// # Errors
     ///
@@ -160,8 +170,8 @@ impl CostStudy {
         // From loose to tight, so that what an allocator keeps of one says little of the next one's memory.
         let mut meshes = Vec::with_capacity(tolerances.len());
         for tolerance in tolerances {
-            meshes.push(mesh_cost::mesh_cost(scene, models, tolerance, settings)?);
-            done();
+            let cost = mesh_cost::mesh_cost(scene, models, tolerance, settings, &mut done)?;
+            meshes.push(cost);
         }
         let stage = Stage::new(scene.clone(), models.to_vec());
         let (pictures, rays) = match rays {
@@ -227,6 +237,24 @@ fn rising(samples: &[NonZeroU32]) -> Result<Vec<u32>, StudyError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn all_pieces_are_done_whether_carried_out_or_not() {
+        let scene = r#"{ "observer": { "velocity": { "beta": 0.8 } },
+            "objects": [ { "name": "box", "shape": { "box": { "size": [1, 1, 1] } }, "position": [0, 0, -2] } ] }"#;
+        let scene = Scene::from_json(scene).unwrap();
+        let (models, _) = crate::io::load_models(&scene, ".".as_ref()).unwrap();
+        let settings = CostSettings {
+            tolerances: vec![Tolerance::Relative(1e-1), Tolerance::Relative(1e-9)],
+            most_triangles: 1000,
+            samples: NonZeroUsize::MIN,
+            ..CostSettings::default()
+        };
+        let mut done = 0;
+        let study = CostStudy::new(&scene, &models, &settings, || done += 1).unwrap();
+        assert!(study.meshes[0].made.is_some() && study.meshes[1].made.is_none());
+        assert_eq!((done, settings.pieces()), (10, 10));
+    }
 
     #[test]
     fn tolerances_are_put_in_order_or_refused() {

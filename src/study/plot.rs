@@ -168,7 +168,7 @@ impl CostStudy {
         let ours = made(|made| made.triangles as f64);
         let theory = made(|made| made.minimum_triangles);
         let uniform = made(|made| made.uniform.triangles);
-        let foretold = self.points(|cost| Some(cost.predicted_triangles));
+        let predicted = self.points(|cost| Some(cost.predicted_triangles));
         let times = made(|made| made.seconds.photosurface);
         let (&tightest, &slowest) = (theory.last()?, times.last()?);
         let tolerance = match self.unit? {
@@ -192,7 +192,7 @@ impl CostStudy {
                     Curve::new("uniform 1:4", ORANGE, uniform),
                     Curve::new("made", BLUE, ours),
                     Curve::new("least by theory", GREEN, theory),
-                    Curve::new("foretold", GREY, foretold).points_alone(),
+                    Curve::new("predicted", GREY, predicted).points_alone(),
                 ],
             ),
             panel(
@@ -201,7 +201,7 @@ impl CostStudy {
                 vec![
                     Curve::new("refine, map, prove", BLUE, times),
                     Curve::new("write", VIOLET, made(|made| made.seconds.write)),
-                    Curve::new("foretell", GREY, made(|made| made.seconds.predict)),
+                    Curve::new("predict", GREY, made(|made| made.seconds.predict)),
                 ],
             ),
         ])

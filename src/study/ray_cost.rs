@@ -37,7 +37,18 @@ impl RaySettings {
             textures: Textures::default(),
         }
     }
+
+    /// How many pictures are made: those of both references, and those of each number of rays so many times.
+    pub(super) fn pieces(&self, repeats: usize) -> usize {
+        match self.samples.len() {
+            0 => 0,
+            numbers => self.cameras.len() * (REFERENCES.len() + numbers * repeats),
+        }
+    }
 }
+
+/// Two, with random places of their own.
+const REFERENCES: [usize; 2] = [0, 1];
 
 /// The pictures of a study, and how well it is known what they should be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -111,7 +122,7 @@ pub struct RayCost {
 /// Pictures of all steps, one after the other, as the linear light of their pixels.
 type Light = Vec<Vec3>;
 
-/// Studies each of `samples`, the fewest first and at least one; `done` is called after the references and after each.
+/// Studies each of `samples`, the fewest first and at least one; `done` is called after each picture.
 pub(super) fn ray_costs(
     stage: &Stage,
     settings: &RaySettings,
@@ -136,8 +147,7 @@ pub(super) fn ray_costs(
         scenery,
     };
     let finer = finest.saturating_mul(REFERENCE_FINER);
-    let references = [0, 1].map(|number| studio.reference(finer, number));
-    done();
+    let references = REFERENCES.map(|number| studio.reference(finer, number, &mut done));
     let pictures = Pictures {
         count: steps,
         width: size.width(),
@@ -150,7 +160,7 @@ pub(super) fn ray_costs(
         let mut light = Light::new();
         for _ in 0..repeats {
             let start = Instant::now();
-            light = studio.all(|_, _| grid_places(samples));
+            light = studio.all(&mut done, |_, _| grid_places(samples));
             times.push(start.elapsed().as_secs_f64());
         }
         let samples_per_pixel = u64::from(samples).pow(2);
@@ -161,7 +171,6 @@ pub(super) fn ray_costs(
             uncertainty,
             largest,
         } = Errors::new(&light, &references);
-        done();
         RayCost {
             samples,
             samples_per_pixel,
@@ -185,8 +194,12 @@ struct Studio<'a> {
 }
 
 impl Studio<'_> {
-    /// The mean over `places` of a step and a pixel.
-    fn all<P: Iterator<Item = DVec2>>(&self, places: impl Fn(usize, usize) -> P + Sync) -> Light {
+    /// The mean over `places` of a step and a pixel; `done` is called after each step.
+    fn all<P: Iterator<Item = DVec2>>(
+        &self,
+        mut done: impl FnMut(),
+        places: impl Fn(usize, usize) -> P + Sync,
+    ) -> Light {
         let scene = self.stage.scene();
         let line = scene.observer().world_line();
         let steps = scene.steps().iter().zip(self.cameras).enumerate();
@@ -194,14 +207,16 @@ impl Studio<'_> {
             let viewpoint = Viewpoint::Observer(&line, proper_time);
             let options = PictureOptions::default();
             let places = |pixel| places(step, pixel);
-            self.scenery.light(camera, viewpoint, options, places)
+            let light = self.scenery.light(camera, viewpoint, options, places);
+            done();
+            light
         });
         light.collect()
     }
 
     /// A random place in each of `finer` by `finer` squares of a pixel, others for each `number`.
-    fn reference(&self, finer: u32, number: usize) -> Light {
-        self.all(|step, pixel| {
+    fn reference(&self, finer: u32, number: usize, done: impl FnMut()) -> Light {
+        self.all(done, |step, pixel| {
             // A picture has fewer than 2^32 pixels: no two seeds are the same.
             let mut random = Random::new((((2 * step + number) as u64) << 32) + pixel as u64);
             grid_places(finer).map(move |middle| {

@@ -159,10 +159,11 @@ impl Certificate {
                 - curvature
                 - bounds.rounding;
             let sine = |length: f64| {
-                if length < nearest {
-                    length / nearest
-                } else {
-                    2.0
+                match length {
+                    // Nothing is nothing however near: a flat shape has no curvature.
+                    0.0 => 0.0,
+                    _ if length < nearest => length / nearest,
+                    _ => 2.0,
                 }
             };
             let total = gap + curvature + bounds.rounding;

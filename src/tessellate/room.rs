@@ -3,13 +3,13 @@
 /// So many turns are taken at most.
 const TURNS: u32 = 2;
 
-/// What a triangle may take beyond what was foreseen, which is good on the whole but not for each.
+/// What a triangle may take beyond what was predicted, which is good on the whole but not for each.
 const BEYOND: f64 = 4.0;
 
-/// More than this is not foreseen of any triangle.
-const MOST_FORESEEN: f64 = 1e15;
+/// More than this is not predicted of any triangle.
+const MOST_PREDICTED: f64 = 1e15;
 
-/// A number of points shared by triangles: first by what was foreseen of each; what some leave goes to those that were
+/// A number of points shared by triangles: first by what was predicted of each; what some leave goes to those that were
 /// short of points, which are then divided anew.
 ///
 /// Shares depend on what was used before and nothing else.
@@ -23,19 +23,19 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// For triangles of which so much is foreseen.
-    pub(super) fn new(foreseen: Vec<f64>, points: u64) -> Self {
-        let weight = |foreseen: f64| {
+    /// For triangles of which so much is predicted.
+    pub(super) fn new(predicted: Vec<f64>, points: u64) -> Self {
+        let weight = |predicted: f64| {
             // NaN is as good as too many.
-            if foreseen < MOST_FORESEEN {
-                foreseen + BEYOND
+            if predicted < MOST_PREDICTED {
+                predicted + BEYOND
             } else {
-                MOST_FORESEEN
+                MOST_PREDICTED
             }
         };
         Self {
-            short: (0..foreseen.len()).collect(),
-            weights: foreseen.into_iter().map(weight).collect(),
+            short: (0..predicted.len()).collect(),
+            weights: predicted.into_iter().map(weight).collect(),
             left: points,
             turns: 0,
         }
@@ -94,8 +94,8 @@ mod tests {
     use super::*;
 
     /// Triangles that need so many points, and what they get.
-    fn shared(foreseen: &[f64], needed: &[usize], points: u64) -> Vec<usize> {
-        let mut room = Room::new(foreseen.to_vec(), points);
+    fn shared(predicted: &[f64], needed: &[usize], points: u64) -> Vec<usize> {
+        let mut room = Room::new(predicted.to_vec(), points);
         let mut got = vec![0; needed.len()];
         loop {
             let turn = room.turn();
@@ -128,17 +128,17 @@ mod tests {
 
     #[test]
     fn all_together_never_have_more_and_what_some_leave_goes_to_others() {
-        let foreseen = [10.0, 0.0, f64::NAN, 3.0, f64::INFINITY, 1e300, 0.5];
+        let predicted = [10.0, 0.0, f64::NAN, 3.0, f64::INFINITY, 1e300, 0.5];
         let needed = [10, 500, 3, 3, 20, 0, 1];
         for points in [0, 1, 7, 50, 300, 537, 1000, 100_000, u64::MAX / 2] {
-            let got = shared(&foreseen, &needed, points);
+            let got = shared(&predicted, &needed, points);
             assert!(
                 got.iter().sum::<usize>() as u64 <= points,
                 "{points}: {got:?}"
             );
         }
-        assert_eq!(shared(&foreseen, &needed, 100_000), needed);
-        // One of which nothing was foreseen gets nearly all that there is.
+        assert_eq!(shared(&predicted, &needed, 100_000), needed);
+        // One of which nothing was predicted gets nearly all that there is.
         let got = shared(&[100.0, 100.0, 0.0], &[1, 1, 10_000], 9_000);
         assert!(got[2] > 8_900, "{got:?}");
     }

@@ -49,7 +49,7 @@ fn what_a_source_refers_to_is_not_written_over() {
     ] {
         workplace
             .run(&format!("export {input} {output}"))
-            .error(&["would be written over what is read"]);
+            .error(&["the output ", " would be written over the input "]);
     }
     assert_eq!(workplace.files(), files);
     for (file, before) in files.iter().zip(before) {
@@ -76,7 +76,15 @@ fn a_stderr_that_is_full_changes_no_exit_status() {
 #[test]
 fn a_stdout_that_is_full_is_named() {
     let workplace = Workplace::new();
-    for command in ["schema", "example", "example cube", "check", "export -o -"] {
+    for command in [
+        "schema",
+        "example",
+        "example cube",
+        "check",
+        "export -o -",
+        "export --help",
+        "--version",
+    ] {
         workplace
             .run_shell(&format!("photosurface {command} >/dev/full"))
             .error(&["error: stdout: ", "No space left"]);

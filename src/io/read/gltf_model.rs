@@ -15,7 +15,7 @@ use super::materials::Materials;
 use super::names::tell_apart;
 use super::nodes::{self, Tree, node_name, read_tree};
 use super::normals::replace_zero_normals;
-use super::note::{Note, add_note, plural, unique};
+use super::note::{Note, add_note, lines, plural, unique};
 use super::primitive::{Source, read_primitive};
 use super::uri::Folder;
 use super::{AccessorProblem, Findings, NodeProblem, ReadError, checked, extensions};
@@ -144,6 +144,14 @@ fn read_node(
     };
     let mut pieces = vec![];
     let mut points_and_lines = 0;
+    let named = root.meshes[mesh].name.as_ref();
+    if root.meshes[mesh].primitives.is_empty() {
+        let place = match named {
+            Some(name) => format!("meshes[{mesh}] (mesh {name:?})"),
+            None => format!("meshes[{mesh}]"),
+        };
+        add_note(notes, Note::Empty { place });
+    }
     for (p, primitive) in root.meshes[mesh].primitives.iter().enumerate() {
         if !is_surface(primitive.mode.unwrap()) {
             points_and_lines += 1;
@@ -152,7 +160,6 @@ fn read_node(
         if transforms.is_empty() {
             continue;
         }
-        let named = root.meshes[mesh].name.as_ref();
         let source = Source {
             document,
             primitive,
@@ -309,6 +316,8 @@ fn content(root: &Root, notes: &[Note]) -> String {
                 | Note::Flat { .. }
         )
     });
-    let skipped: String = skipped.map(|note| format!("; {note}")).collect();
+    let skipped: Vec<Note> = skipped.cloned().collect();
+    let skipped = lines(&skipped).into_iter().map(|line| format!("; {line}"));
+    let skipped: String = skipped.collect();
     format!("{nodes} and {meshes}{skipped}")
 }

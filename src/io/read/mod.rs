@@ -61,6 +61,14 @@ pub struct Findings {
     pub files: Vec<PathBuf>,
 }
 
+impl Findings {
+    /// The notes as lines of text, in their order. What is said of several meshes, nodes, materials or images alike is
+    /// said once, with how many there are.
+    pub fn lines(&self) -> Vec<String> {
+        note::lines(&self.notes)
+    }
+}
+
 /// The largest coordinate of a source: its square times the exponential of any rapidity is within `f64`.
 const FARTHEST: f64 = 1e75;
 

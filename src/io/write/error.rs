@@ -32,8 +32,7 @@ pub enum WriteError {
     /// A number that would be beyond it at any speed.
     #[error(
         "{quantity} of vertex {vertex} of the photosurface \"{name}\" is {value:e}, beyond what 32-bit numbers of a \
-         file hold ({limit:e}): it is too far away; choose a smaller distance or a larger unit, or .ply, whose \
-         positions have 64 bits"
+         file hold ({limit:e}): it is too far away; choose a smaller distance or a larger unit"
     )]
     TooFar {
         /// Which photosurface.

@@ -1,4 +1,4 @@
-//! `photosurface check` and what `export` says: one foretells what the other makes, and how it ends.
+//! `photosurface check` and what `export` says: one predicts what the other makes, and how it ends.
 
 use crate::common::command::Workplace;
 
@@ -69,10 +69,13 @@ fn check_ends_as_the_export_will() {
         ("ball.json", 0),
         ("--no-subdivide --tolerance 1e-6", 1),
         ("--tolerance 1e-9 --format ply --max-triangles 1000", 1),
-        ("square.obj --max-triangles 1", 1),
+        // What is there already is within the tolerance, and stays.
+        ("square.obj --max-triangles 1", 0),
+        ("ball.json --max-triangles 0", 0),
+        ("--max-triangles 0", 1),
         (
             "square.obj --max-triangles 1 --no-subdivide --tolerance 1",
-            1,
+            0,
         ),
         ("square.obj --lod 1e-2,1e-9", 1),
         ("square.obj --lod 1e-2,1e-3", 0),
@@ -80,12 +83,28 @@ fn check_ends_as_the_export_will() {
     ] {
         let run = workplace.run(&format!("check {flags}"));
         assert_eq!(run.status, status, "{run}");
+        let says_no = status == 1;
+        if status < 2 && !flags.contains("--lod") {
+            let certified = run.stdout_text().lines().nth(1).expect("a table");
+            assert_eq!(certified.trim_end().ends_with(" no"), says_no, "{run}");
+        }
         let (flags, extension) = match flags.split_once("--format ply") {
             Some((before, after)) => (format!("{before}{after}"), "ply"),
             None => (flags.to_owned(), "glb"),
         };
-        let run = workplace.run(&format!("export {flags} -o out.{extension}"));
+        let report = if flags.contains("--lod") {
+            ""
+        } else {
+            "--report report.json"
+        };
+        let run = workplace.run(&format!("export {flags} -o out.{extension} {report}"));
         assert_eq!(run.status, status, "{run}");
+        if status < 2 && !report.is_empty() {
+            let report = workplace.read_json("report.json");
+            let mut objects = report["objects"].as_array().expect("objects").iter();
+            let all = objects.all(|object| object["certificate"]["complete"] == true);
+            assert_eq!(all, !says_no, "{run}");
+        }
     }
 }
 
@@ -93,6 +112,7 @@ fn check_ends_as_the_export_will() {
 #[test]
 fn check_is_of_the_format_that_is_to_be_written() {
     let workplace = Workplace::with_ball();
+    workplace.write("tiny.obj", "v 0 0 0\nv 1e-50 0 0\nv 0 1e-50 0\nf 1 2 3\n");
     let far = "square.obj --observer 1e40,0,0 --beta 0.5 --tolerance abs:1e30";
     for line in [format!("check {far}"), format!("export {far} -o out.glb")] {
         let run = workplace
@@ -107,9 +127,25 @@ fn check_is_of_the_format_that_is_to_be_written() {
         .run(&format!("check {far} --format ply"))
         .success();
     workplace.run(&format!("export {far} -o out.ply")).success();
-    workplace
-        .run("check square.obj --rapidity 300")
-        .error(&["smaller rapidity"]);
+    // Too fast and too small are no matter of distance, and a PLY holds these too.
+    for (flags, word) in [
+        ("square.obj --rapidity 300", "smaller rapidity"),
+        ("--rapidity 350", "smaller rapidity"),
+        ("tiny.obj --beta 0.5", "too small"),
+    ] {
+        let glb = [
+            "check FLAGS",
+            "export FLAGS -o out.glb",
+            "export FLAGS -o out.gltf",
+        ];
+        for line in glb.map(|line| line.replace("FLAGS", flags)) {
+            workplace
+                .run(&line)
+                .error(&[word, "; or write a .ply, whose 64-bit numbers hold it"]);
+        }
+        let status = workplace.run(&format!("check {flags} --format ply")).status;
+        assert!(status < 2, "{flags}");
+    }
 }
 
 /// A point has no diagonal that a tolerance could be a fraction of.

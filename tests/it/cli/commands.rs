@@ -138,11 +138,34 @@ fn stdin_and_stdout_take_the_place_of_files() {
         .error(&["stdin", "line 1", "objects"]);
     workplace
         .run_with("export - -o x.glb", b"\xff\xfe", &[])
-        .error(&["stdin", "this is neither"]);
+        .error(&["stdin", "this is neither", "give its name in place of -"]);
     workplace.run("export --split -o -").error(&["--split"]);
     workplace
         .run("export -o - --report -")
         .error(&["cannot both go to stdout"]);
+}
+
+/// A name says what a file is; stdout has none.
+#[test]
+fn stdout_takes_the_format_that_is_asked_for() {
+    let workplace = Workplace::with_ball();
+    workplace.run("export ball.json -o file.glb").success();
+    workplace
+        .run("export ball.json -o file.ply --format ply")
+        .success();
+    for format in ["glb", "ply"] {
+        let line = format!("export ball.json -o - --format {format}");
+        let run = workplace.run(&line).success();
+        assert!(run.stdout == workplace.read(&format!("file.{format}")));
+    }
+    workplace.run("export ball.json --format ply").success();
+    assert!(workplace.read("ball_photosurface.ply") == workplace.read("file.ply"));
+    workplace
+        .run("export ball.json -o - --format gltf")
+        .error(&["--format gltf", "expected glb or ply"]);
+    workplace
+        .run("export ball.json -o other.glb --format ply")
+        .error(&["other.glb: is .glb by its name and .ply by --format"]);
 }
 
 #[test]
@@ -276,6 +299,22 @@ fn the_marker_is_told_beside_the_triangles() {
     assert!(run.stderr.contains(" triangles and the marker, "), "{run}");
 }
 
+/// A note for each material would hide the one that matters.
+#[test]
+fn what_is_said_of_many_things_of_a_file_is_said_once() {
+    let workplace = Workplace::new();
+    let faces = "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\nusemtl d\nf 1 2 3\n";
+    workplace.write("many.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{faces}"));
+    let run = workplace.run("check many.obj").success();
+    let notes: Vec<_> = run.stderr.lines().collect();
+    assert_eq!(notes.len(), 1, "{run}");
+    assert!(
+        notes[0].starts_with("note: many.obj: material \"a\""),
+        "{run}"
+    );
+    assert!(notes[0].ends_with(", and so 3 more materials"), "{run}");
+}
+
 #[cfg(unix)]
 #[test]
 fn an_unwritable_directory_is_told_before_any_work() {
@@ -328,7 +367,7 @@ fn no_two_outputs_are_one_file() {
     ] {
         workplace
             .run(&format!("export ball.json {arguments}"))
-            .error(&["written over", "which is an output too"]);
+            .error(&["the output ", "written over another output, "]);
         assert_eq!(workplace.files(), ["ball.json", "square.obj"]);
     }
     #[cfg(unix)]
@@ -336,7 +375,7 @@ fn no_two_outputs_are_one_file() {
         std::os::unix::fs::symlink("b.glb", workplace.path("link")).unwrap();
         workplace
             .run("export ball.json -o b.glb --report link")
-            .error(&["link: would be written over b.glb"]);
+            .error(&["the output link would be written over another output, b.glb"]);
         workplace.run("export ball.json --report link").success();
         assert_eq!(
             workplace.read_json("b.glb")["objects"][0]["object"],

@@ -228,6 +228,11 @@ fn a_closed_stdout_is_an_error_where_something_was_to_go_there() {
         "render ball.json --size 16x12 -o -",
         "schema",
         "example sphere",
+        "--help",
+        "-h",
+        "--version",
+        "help cost",
+        "export --help",
     ] {
         let run = workplace.run_shell(&format!("photosurface {command} >&-"));
         one_error(run, &["stdout", "closed"]);

@@ -126,7 +126,7 @@ fn what_is_no_number_is_told_with_what_was_expected() {
     for (line, words) in [
         (
             "export --beta abc",
-            ["--beta", "\"abc\" is no number, expected one such as 0.5"],
+            ["--beta", "\"abc\" is not a number (expected e.g. 0.5)"],
         ),
         ("export --gamma inf", ["--gamma", "inf is not finite"]),
         // Negative numbers of every form are values, no flags; a flag in the place of a value is none.
@@ -139,9 +139,9 @@ fn what_is_no_number_is_told_with_what_was_expected() {
             ["--marker is -0.5", "expected a length"],
         ),
         ("render --fov -1e-3", ["--fov", "-0.001"]),
-        ("export --time -q", ["--time", "\"-q\" is no number"]),
-        ("export --marker x", ["--marker", "\"x\" is no number"]),
-        ("render --fov wide", ["--fov", "\"wide\" is no number"]),
+        ("export --time -q", ["--time", "\"-q\" is not a number"]),
+        ("export --marker x", ["--marker", "\"x\" is not a number"]),
+        ("render --fov wide", ["--fov", "\"wide\" is not a number"]),
         ("render --samples 0", ["--samples", "expected 1 to 16"]),
         ("cost --repeats 0", ["--repeats", "expected at least 1"]),
         ("cost --samples x", ["--samples", "expected a whole number"]),

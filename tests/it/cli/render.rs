@@ -139,7 +139,17 @@ fn pictures_that_make_no_sense_are_refused_before_any_work() {
 fn a_sheet_shows_every_step_twice() {
     let workplace = Workplace::with_ball();
     let flags = "render ball.json --steps 0,3 --size 40x30";
-    workplace.run(&format!("{flags} --sheet")).success();
+    let run = workplace.run(&format!("{flags} --sheet")).success();
+    assert!(
+        run.stderr.contains("above, what the observer sees"),
+        "{run}"
+    );
+    assert!(!run.stderr.contains("blue"), "{run}");
+    let colored = format!("{flags} --sheet --ghost contracted,rest --axes -o colored.png");
+    let run = workplace.run(&colored).success();
+    let legend =
+        "blue, the shape at rest; orange, contracted by its motion; axes, x red, y green, z blue";
+    assert!(run.stderr.contains(legend), "{run}");
     let sheet = workplace.read("ball_sheet.png");
     assert_eq!(png_size(&sheet), (2 * 40 + 4, 2 * 30 + 4));
     let plain = pixels(&sheet);

@@ -78,8 +78,8 @@ fn cost_follows_theory() {
         assert!(made("triangles") * 4.0 < 300_000.0, "{row:#}");
         assert!(made("error") > made("gap") / 3.0, "{row:#}");
         assert!(made("bound_length") == made("bound"), "{row:#}");
-        let foretold = number(row, "/predicted_triangles") / made("triangles");
-        assert!((0.67..1.5).contains(&foretold), "{row:#}");
+        let predicted = number(row, "/predicted_triangles") / made("triangles");
+        assert!((0.67..1.5).contains(&predicted), "{row:#}");
     }
     for pair in rows.windows(2) {
         let both = |place| (number(&pair[0], place), number(&pair[1], place));
@@ -168,7 +168,7 @@ fn angles_are_proven_and_measured_as_angles() {
     }
 }
 
-/// On every built-in scene, what is foretold is what `check` foretells, and nothing measured is beyond what is proven.
+/// On every built-in scene, what is predicted is what `check` predicts, and nothing measured is beyond what is proven.
 #[test]
 fn built_in_scenes_keep_their_bounds() {
     let workplace = Workplace::new();
@@ -180,8 +180,8 @@ fn built_in_scenes_keep_their_bounds() {
             assert_consistent(row);
             let check = workplace.run(&format!("check --example {scene} --tolerance {tolerance}"));
             let table = check.success().stdout_text().replace(',', "");
-            let foretold = format!("about {:.0} triangles", number(row, "/predicted_triangles"));
-            assert!(table.contains(&foretold), "{foretold}\n{table}");
+            let predicted = format!("about {:.0} triangles", number(row, "/predicted_triangles"));
+            assert!(table.contains(&predicted), "{predicted}\n{table}");
         }
     }
 }
@@ -375,6 +375,19 @@ fn what_cannot_be_plotted_is_told_all_the_same() {
         "{run}"
     );
     assert!(workplace.files().is_empty(), "{:?}", workplace.files());
+}
+
+#[test]
+fn a_study_of_what_is_at_rest_says_so() {
+    let workplace = Workplace::with_ball();
+    let line = "cost square.obj --only meshes --tolerances 1e-1 --samples 10 --repeats 1";
+    for (flags, is_said) in [("", true), ("--beta 0.5", false)] {
+        let run = workplace.run(&format!("{line} {flags}")).success();
+        let says = run
+            .stderr
+            .contains("nothing moves relative to the observer");
+        assert_eq!(says, is_said, "{run}");
+    }
 }
 
 #[test]

@@ -67,7 +67,10 @@ impl Area {
             repeats: NonZeroUsize::MIN,
             ..CostSettings::default()
         };
-        CostStudy::new(&scene, &[model], &settings, || ()).expect("a study")
+        let mut done = 0;
+        let study = CostStudy::new(&scene, &[model], &settings, || done += 1).expect("a study");
+        assert_eq!(done, settings.pieces());
+        study
     }
 
     /// Right, up and forward of the camera, and how long the middle of an edge is from the middle of the picture at

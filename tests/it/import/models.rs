@@ -224,6 +224,19 @@ fn what_has_no_surface_is_skipped_with_a_note() {
     assert_eq!(notes, ["the file: 2 primitives of points or lines skipped"]);
 }
 
+/// glTF has it that a mesh has a primitive; some exporters leave an empty one behind.
+#[test]
+fn a_mesh_without_primitives_is_named() {
+    let json = br#"{ "asset": { "version": "2.0" }, "nodes": [{ "mesh": 0 }, { "mesh": 1 }],
+        "meshes": [{ "name": "gone", "primitives": [] }, { "primitives": [] }] }"#;
+    let error = read_gltf_bytes(json, Path::new("")).expect_err("no triangles");
+    let message = error.to_string();
+    for named in ["meshes[0] (mesh \"gone\")", "meshes[1]"] {
+        let note = format!("{named}: has no triangles, skipped");
+        assert!(message.contains(&note), "{message}");
+    }
+}
+
 #[test]
 fn parts_of_one_node_are_told_apart_by_their_materials() {
     let (model, _) = read("two_primitives.glb");

@@ -12,7 +12,7 @@ use crate::tessellate::{local_stretch, predicted_pieces};
 
 /// What an object will take, and whether its tolerance can be kept at all.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::photosurface) struct Foresight {
+pub(in crate::photosurface) struct Predicted {
     pub(in crate::photosurface) triangles: f64,
     /// Of those, how many there are before any refinement.
     pub(in crate::photosurface) before: f64,
@@ -25,7 +25,7 @@ impl Plan<'_> {
     /// Of a finer round shape than is at hand each facet stands for several, smaller ones.
     ///
     /// `weights` says for each part of how many triangles each of its own is a sample.
-    pub(in crate::photosurface) fn foresee(mut self, wanted: Wanted, weights: &[f64]) -> Foresight {
+    pub(in crate::photosurface) fn predict(mut self, wanted: Wanted, weights: &[f64]) -> Predicted {
         let velocity = self.view.relative_velocity();
         let facets = self.shape.as_ref().map_or(0, Shape::triangle_count);
         let (draft, each) = if facets > FACETS_MADE_TO_PREDICT {
@@ -55,7 +55,7 @@ impl Plan<'_> {
             let prove = |((_, part), seen): (&(String, Part), &Seen)| {
                 self.certificate_of_unrefined(&draft.limits, part.mesh(), seen, around)
             };
-            return Foresight {
+            return Predicted {
                 triangles: before,
                 before,
                 reachable: (draft.parts.iter().zip(&draft.seen).map(prove)).all(|c| c.complete),
@@ -80,7 +80,7 @@ impl Plan<'_> {
             }
             _ => draft.limits.left >= LEAST_FOR_GAP * self.aimed_length,
         };
-        Foresight {
+        Predicted {
             // Added up in their order: the same sum for any number of threads.
             triangles: pieces.collect::<Vec<f64>>().iter().sum(),
             before,
