@@ -17,6 +17,7 @@
 
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
+mod effects;
 mod io;
 mod light_cone;
 mod mesh;
