@@ -17,6 +17,7 @@
 
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
+mod effects;
 mod io;
 mod light_cone;
 mod mesh;
@@ -47,7 +48,7 @@ pub use photosurface::{
 };
 pub use render::{
     Camera, CameraError, MAX_PICTURE_SIDE, MissingTexture, Picture, PictureOptions, PictureSize,
-    Projection, Scenery, Strokes, Textures, Viewpoint, lettering, lettering_width,
+    Projection, Scenery, Strokes, Textures, Viewpoint, lettering_width,
 };
 pub use scene::{
     Attribute, Attributes, BUILT_IN_SCENES, BuiltInScene, InvalidScene, MarkerRadius,

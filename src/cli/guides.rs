@@ -2,7 +2,7 @@
 
 use photosurface::{
     Color, DAffine3, DVec2, DVec3, Mesh, Picture, Scenery, Stage, Strokes, View, Viewpoint,
-    lettering, lettering_width,
+    lettering_width,
 };
 
 use super::camera::Outside;
@@ -193,11 +193,7 @@ fn letters(picture: &Picture) -> f64 {
 
 fn write(picture: &mut Picture, text: &str, start: DVec2, color: Color) {
     let height = letters(picture);
-    picture.draw(&Strokes {
-        lines: lettering(text, start, height),
-        color,
-        width_px: (height / 7.0).max(1.2),
-    });
+    picture.write(text, start, height, color);
 }
 
 /// Grey that is told from the background, darker or lighter.

@@ -6,7 +6,7 @@ use super::caster::{Caster, MeshHit};
 use super::paint::Paint;
 use super::placed::SmoothHit;
 use super::ray::Ray;
-use super::sight::Sight;
+use super::sight::{RestRay, Sight};
 use super::sphere::Ball;
 use super::tree::Bounds;
 use super::turned::Turned;
@@ -15,9 +15,6 @@ use crate::spacetime::{WorldLine, unit};
 
 /// What has no corners is within a ball so much larger, roundings and all.
 const RADIUS_MARGIN: f64 = 1.0 + 1e-9;
-
-/// How bright a surface is that the lamp only grazes.
-pub(super) const AMBIENT: f32 = 0.25;
 
 pub(super) struct Body {
     pub(super) geometry: Geometry,
@@ -69,9 +66,9 @@ pub(super) enum Stands {
     Plain,
 }
 
-/// Where a ray meets a body.
-pub(super) struct Hit {
-    /// In units of the ray's direction, in the frame of the body's geometry.
+/// Where a ray meets a body, in the frame of the body's geometry.
+pub(super) struct BodyHit {
+    /// In units of the ray's direction.
     pub(super) distance: f64,
     /// Of any length.
     normal: DVec3,
@@ -81,12 +78,21 @@ pub(super) struct Hit {
     corners: Option<[u32; 3]>,
 }
 
-/// What a ray meets.
-pub(super) struct Meeting<'a> {
-    pub(super) distance: f64,
+/// What is seen in a direction.
+///
+/// Distance, cosine and Doppler factor are apart: what light does with each of them is for
+/// [`PixelShader`](super::pixel_shader::PixelShader) to say.
+pub(super) struct Hit<'a> {
+    /// The number of the body that is hit.
+    pub(super) body: usize,
     pub(super) paint: &'a Paint,
-    /// How much of its colour the lamp shows.
-    pub(super) brightness: f32,
+    /// From the eye, as it is seen.
+    pub(super) distance: f64,
+    /// Of the angle between the ray and the normal on the side that is hit, from 0 to 1, in the rest frame of the body;
+    /// where viewpoint or body has no motion, in the frame in which things stand. 1 where the normal has no direction.
+    pub(super) cosine: f64,
+    /// Frequency seen over frequency emitted; positive. 1 where viewpoint or body has no motion.
+    pub(super) doppler: f64,
     pub(super) texture: DVec2,
     pub(super) vertex_color: Vec4,
     /// The corners of the triangle, as they are seen, where wires are wanted.
@@ -95,13 +101,13 @@ pub(super) struct Meeting<'a> {
 
 impl Body {
     /// The nearest hit farther than `beyond` and not as far as `limit`.
-    pub(super) fn cast(&self, ray: &Ray, beyond: f64, limit: f64) -> Option<Hit> {
+    pub(super) fn cast(&self, ray: &Ray, beyond: f64, limit: f64) -> Option<BodyHit> {
         let (origin, direction) = (ray.origin(), ray.direction());
         match &self.geometry {
             Geometry::Mesh(caster) => {
                 let hit = caster.cast(ray, beyond, limit, self.paint.double_sided)?;
                 let (normal, texture, vertex_color) = attributes(caster.mesh(), &self.paint, &hit);
-                Some(Hit {
+                Some(BodyHit {
                     distance: hit.distance,
                     normal,
                     texture,
@@ -114,47 +120,50 @@ impl Body {
         }
     }
 
-    /// What is seen of a hit in the direction `seen`, which is `direction` in the frame of the geometry.
-    pub(super) fn meeting(
+    /// What is seen of a hit of this body, the one numbered `number`, in the direction `seen`, which is along `ray` in the
+    /// frame of its geometry.
+    pub(super) fn seen(
         &self,
-        hit: &Hit,
+        number: usize,
+        hit: &BodyHit,
+        ray: RestRay,
+        seen: DVec3,
         sight: Option<&Sight>,
-        [seen, direction]: [DVec3; 2],
-        (distance, wires): (f64, bool),
-    ) -> Meeting<'_> {
-        let is_mapped = matches!(self.stands, Stands::Mapped(_));
-        let lit = match sight {
-            Some(sight) if is_mapped => sight
-                .normal_at_rest(hit.normal, seen)
-                .map(|normal| normal.dot(sight.ray(seen).direction)),
-            _ => unit(hit.normal).map(|normal| normal.dot(direction)),
+        wires: bool,
+    ) -> Hit<'_> {
+        let mapped = sight.filter(|_| self.is_mapped());
+        let (normal_rest, ray_rest) = match mapped {
+            Some(sight) => (sight.normal_at_rest(hit.normal, seen), sight.ray(seen)),
+            None => (unit(hit.normal), ray),
         };
+        let cosine = normal_rest.map_or(1.0, |normal| normal.dot(ray_rest.direction));
         let triangle = match (&self.geometry, hit.corners) {
-            (Geometry::Mesh(caster), Some(corners)) if wires && is_mapped => {
+            (Geometry::Mesh(caster), Some(corners)) if wires && self.is_mapped() => {
                 // A mesh holds no index beyond its vertices.
                 Some(corners.map(|corner| caster.mesh().positions()[corner as usize]))
             }
             _ => None,
         };
-        Meeting {
-            distance,
+        Hit {
+            body: number,
             paint: &self.paint,
-            brightness: match lit {
-                Some(cosine) if !self.paint.unlit => {
-                    AMBIENT + (1.0 - AMBIENT) * cosine.abs().min(1.0) as f32
-                }
-                _ => 1.0,
-            },
+            distance: hit.distance / ray.stretch,
+            cosine: cosine.abs().min(1.0),
+            doppler: ray_rest.doppler(),
             texture: hit.texture,
             vertex_color: hit.vertex_color,
             triangle,
         }
     }
+
+    fn is_mapped(&self) -> bool {
+        matches!(self.stands, Stands::Mapped(_))
+    }
 }
 
 /// The hit of a surface that has no corners.
-fn smooth(hit: SmoothHit) -> Hit {
-    Hit {
+fn smooth(hit: SmoothHit) -> BodyHit {
+    BodyHit {
         distance: hit.distance,
         normal: hit.normal,
         texture: hit.texture,

@@ -6,10 +6,10 @@
 use glam::DVec3;
 
 use super::Viewpoint;
-use super::body::{Body, Hit, Meeting, Stands};
+use super::body::{Body, BodyHit, Hit, Stands};
 use super::cone::Cone;
 use super::ray::Ray;
-use super::sight::Sight;
+use super::sight::{RestRay, Sight};
 use super::tree::{Bounds, Tree};
 use crate::spacetime::WorldLine;
 
@@ -36,19 +36,19 @@ struct Group {
     tree: Tree,
 }
 
-/// A ray in the frame of a group.
+/// A ray in the frame of a group, followed back from the eye.
 struct Path {
-    ray: Ray,
-    /// Distance in the group's frame over distance seen.
-    stretch: f64,
+    ray: RestRay,
+    /// The same, prepared for what it may meet.
+    prepared: Ray,
 }
 
 /// What is nearest so far: of several at one distance the first.
 struct Found {
     distance: f64,
     body: usize,
-    hit: Hit,
-    direction: DVec3,
+    hit: BodyHit,
+    ray: RestRay,
 }
 
 impl<'a> Crowd<'a> {
@@ -102,7 +102,7 @@ impl<'a> Crowd<'a> {
         beyond: f64,
         limit: f64,
         wires: bool,
-    ) -> Option<Meeting<'a>> {
+    ) -> Option<Hit<'a>> {
         let mut found: Option<Found> = None;
         self.in_view(seen, |group| {
             let path = group.path(self.eye, seen);
@@ -113,11 +113,11 @@ impl<'a> Crowd<'a> {
                 Some(_) => (rest_limit * THERE_AND_BACK).min(f64::MAX),
                 None => rest_limit,
             };
-            let Some((body, hit)) = group.nearest(&self.bodies, &path.ray, beyond, rest_limit)
+            let Some((body, hit)) = group.nearest(&self.bodies, &path.prepared, beyond, rest_limit)
             else {
                 return;
             };
-            let distance = hit.distance / path.stretch;
+            let distance = hit.distance / path.ray.stretch;
             let is_nearer = found.as_ref().is_none_or(|found| {
                 distance < found.distance || (distance == found.distance && body < found.body)
             });
@@ -126,33 +126,33 @@ impl<'a> Crowd<'a> {
                     distance,
                     body,
                     hit,
-                    direction: path.ray.direction(),
+                    ray: path.ray,
                 });
             }
         });
-        found.map(|found| self.meeting(&found, seen, wires))
+        found.map(|found| self.seen(&found, seen, wires))
     }
 
-    /// The first meeting with every body that a ray along `seen` meets, with the number of the body, in their order.
-    pub(super) fn all(&self, seen: DVec3) -> Vec<(usize, Meeting<'a>)> {
+    /// The first hit on every body that a ray along `seen` meets, in the order of the bodies.
+    pub(super) fn all(&self, seen: DVec3) -> Vec<Hit<'a>> {
         let mut all = Vec::new();
         self.in_view(seen, |group| {
             let path = group.path(self.eye, seen);
-            group.tree.along(&path.ray, f64::MAX, |number| {
+            group.tree.along(&path.prepared, f64::MAX, |number| {
                 let body = group.first + number as usize;
-                if let Some(hit) = self.bodies[body].0.cast(&path.ray, 0.0, f64::MAX) {
+                if let Some(hit) = self.bodies[body].0.cast(&path.prepared, 0.0, f64::MAX) {
                     let found = Found {
-                        distance: hit.distance / path.stretch,
+                        distance: hit.distance / path.ray.stretch,
                         body,
                         hit,
-                        direction: path.ray.direction(),
+                        ray: path.ray,
                     };
-                    all.push((body, self.meeting(&found, seen, false)));
+                    all.push(self.seen(&found, seen, false));
                 }
                 f64::MAX
             });
         });
-        all.sort_unstable_by_key(|(body, _)| *body);
+        all.sort_unstable_by_key(|hit| hit.body);
         all
     }
 
@@ -166,13 +166,15 @@ impl<'a> Crowd<'a> {
         });
     }
 
-    fn meeting(&self, found: &Found, seen: DVec3, wires: bool) -> Meeting<'a> {
+    fn seen(&self, found: &Found, seen: DVec3, wires: bool) -> Hit<'a> {
         let (body, sight) = &self.bodies[found.body];
-        body.meeting(
+        body.seen(
+            found.body,
             &found.hit,
+            found.ray,
+            seen,
             sight.as_ref(),
-            [seen, found.direction],
-            (found.distance, wires),
+            wires,
         )
     }
 }
@@ -212,16 +214,13 @@ impl Group {
     }
 
     fn path(&self, eye: DVec3, seen: DVec3) -> Path {
-        let (origin, direction, stretch) = match &self.sight {
-            Some(sight) => {
-                let ray = sight.ray(seen);
-                (ray.origin, ray.direction, ray.stretch)
-            }
-            None => (eye, seen, 1.0),
+        let ray = match &self.sight {
+            Some(sight) => sight.ray(seen),
+            None => RestRay::unmoved(eye, seen),
         };
         Path {
-            ray: Ray::new(origin, direction),
-            stretch,
+            ray,
+            prepared: Ray::new(ray.origin, ray.direction),
         }
     }
 
@@ -233,8 +232,8 @@ impl Group {
         ray: &Ray,
         beyond: f64,
         limit: f64,
-    ) -> Option<(usize, Hit)> {
-        let mut nearest: Option<(usize, Hit)> = None;
+    ) -> Option<(usize, BodyHit)> {
+        let mut nearest: Option<(usize, BodyHit)> = None;
         self.tree.along(ray, limit, |number| {
             let body = self.first + number as usize;
             let farthest = nearest.as_ref().map_or(limit, |(_, hit)| hit.distance);
@@ -260,7 +259,7 @@ impl Group {
 
 impl Path {
     fn to_rest(&self, seen: f64) -> f64 {
-        (seen * self.stretch).min(f64::MAX)
+        (seen * self.ray.stretch).min(f64::MAX)
     }
 }
 
@@ -327,22 +326,71 @@ mod tests {
                 .map(|body| Crowd::new(std::iter::once(body), viewpoint))
                 .collect();
             for seen in rays(&camera(look)) {
-                let mut nearest: Option<Meeting> = None;
-                for meeting in alone
+                let mut nearest: Option<Hit> = None;
+                for hit in alone
                     .iter()
                     .filter_map(|one| one.nearest(seen, 0.0, f64::MAX, false))
                 {
                     if nearest
                         .as_ref()
-                        .is_none_or(|nearest| meeting.distance < nearest.distance)
+                        .is_none_or(|nearest| hit.distance < nearest.distance)
                     {
-                        nearest = Some(meeting);
+                        nearest = Some(hit);
                     }
                 }
                 let found = crowd.nearest(seen, 0.0, f64::MAX, false);
-                let told =
-                    |meeting: Meeting| (meeting.distance, meeting.brightness, meeting.texture);
+                let told = |hit: Hit| (hit.distance, hit.cosine, hit.doppler, hit.texture);
                 assert_eq!(found.map(told), nearest.map(told), "{name} {seen}");
+            }
+        }
+    }
+
+    /// Of an observer at 0.8 c in the middle of a ball and of a box: the ray alone says what the Doppler factor is,
+    /// `1 / (gamma (1 - beta cos angle))` with the angle that is seen, whatever is hit.
+    #[test]
+    fn hits_know_how_light_is_shifted() {
+        let scene = |shape| {
+            let scene = json!({
+                "observer": { "velocity": { "beta": 0.8, "direction": [0, 0, -1] } },
+                "objects": [{ "name": "around", "shape": shape }],
+            });
+            Scene::from_json(&scene.to_string()).unwrap()
+        };
+        let ball = scene(json!({ "sphere": { "radius": 9 } }));
+        let cube = scene(json!({ "box": { "size": [9, 9, 9] } }));
+        let line = ball.observer().world_line();
+        let mut mapped = Scenery::new();
+        let cubes = scenery(&cube);
+        let Source::Shape(shape, appearance) = &cube.objects()[0].source else {
+            unreachable!()
+        };
+        let model = shape.model(appearance).unwrap();
+        mapped.add_photosurface(&cube.objects()[0], model.parts[0].mesh(), None);
+        let balls = scenery(&ball);
+        for (scenery, is_ball) in [(&balls, true), (&cubes, false), (&mapped, false)] {
+            let observer = Viewpoint::Observer(&line, 0.0);
+            for (viewpoint, is_moving) in
+                [(observer, true), (Viewpoint::Outside(DVec3::ZERO), false)]
+            {
+                let crowd = Crowd::new(scenery.bodies.iter(), viewpoint);
+                for seen in rays(&camera(DVec3::new(0.0, 0.9, -1.0))).step_by(101) {
+                    let hit = crowd.nearest(seen, 0.0, f64::MAX, false).unwrap();
+                    let doppler = match is_moving {
+                        true => 0.6 / (1.0 + 0.8 * seen.z),
+                        false => 1.0,
+                    };
+                    assert!((hit.doppler - doppler).abs() < 1e-14 * doppler, "{seen}");
+                    // At rest, all of a ball is seen head-on from its middle.
+                    assert!(!is_ball || (hit.cosine - 1.0).abs() < 1e-14, "{seen}");
+                }
+                // Straight ahead and behind, whatever the frame.
+                for (seen, doppler) in [(DVec3::NEG_Z, 3.0), (DVec3::Z, 1.0 / 3.0)] {
+                    let hit = crowd.nearest(seen, 0.0, f64::MAX, false).unwrap();
+                    let doppler = if is_moving { doppler } else { 1.0 };
+                    assert!((hit.doppler - doppler).abs() < 1e-14);
+                    assert!((hit.cosine - 1.0).abs() < 1e-14);
+                    assert_eq!(hit.body, 0);
+                }
             }
         }
     }

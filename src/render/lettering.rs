@@ -1,86 +1,149 @@
-//! Numbers and a few letters as strokes: labels of axes, bars and steps.
+//! Text on a finished picture.
 
+use std::sync::LazyLock;
+
+use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
 use glam::DVec2;
 
-/// Advance of one character as a part of its height.
-const ADVANCE: f64 = 0.8;
+use super::picture::Picture;
+use crate::mesh::Color;
 
-/// The lines that write `text` with letters of so many pixels in height, from the lower left corner `start` on;
-/// what there are no strokes for is left blank.
-pub fn lettering(text: &str, start: DVec2, height_px: f64) -> Vec<[DVec2; 2]> {
-    let place = |index: usize, x: u8, y: u8| {
-        let column = index as f64 * ADVANCE + f64::from(x) / 6.0;
-        start + height_px * DVec2::new(column, -f64::from(y) / 6.0)
-    };
-    let characters = text.chars().enumerate();
-    let polylines = characters.flat_map(|(index, character)| {
-        let glyph = glyph(character).split(' ');
-        glyph.map(move |polyline| {
-            let digits: Vec<_> = polyline.bytes().map(|digit| digit - b'0').collect();
-            let points = digits.chunks_exact(2).map(|xy| place(index, xy[0], xy[1]));
-            points.collect::<Vec<_>>()
-        })
-    });
-    polylines
-        .flat_map(|points| {
-            points
-                .windows(2)
-                .map(|ends| [ends[0], ends[1]])
-                .collect::<Vec<_>>()
-        })
-        .collect()
-}
+/// Of DejaVu Sans what English and numbers need, a tau, and a box; `src/render/font/README.md` says where it is from.
+pub(crate) const FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
 
-/// Width of a text of letters of so many pixels in height.
-pub fn lettering_width(text: &str, height_px: f64) -> f64 {
-    text.chars().count() as f64 * ADVANCE * height_px
-}
+/// Height of a capital letter in units of the font.
+const CAPITAL: f32 = 1493.0;
 
-/// Polylines of a character; each point is two digits, x from 0 to 4 and y from 0, the base line, to 6.
-fn glyph(character: char) -> &'static str {
-    match character {
-        '0' => "1030414536160501 10",
-        '1' => "0426 26201030",
-        '2' => "0516364534000040",
-        '3' => "0616364534231423344331100001",
-        '4' => "3036020242",
-        '5' => "46060323344341301001",
-        '6' => "4536160501103041423313",
-        '7' => "0646461020",
-        '8' => "1304051636454433130201103041423313",
-        '9' => "0110304145361605041333434",
-        '.' => "20212020",
-        '-' => "0343",
-        '=' => "02420242 04440444",
-        'x' => "0044 0440",
-        'y' => "0422 4400",
-        'z' => "04440040",
-        'e' => "0242433414030110304",
-        'τ' => "0444 24211030",
-        _ => "",
+static FACE: LazyLock<FontRef<'static>> =
+    LazyLock::new(|| FontRef::try_from_slice(FONT).expect("the font is part of the program"));
+
+impl Picture {
+    /// Writes a text in one line, its capitals so many pixels high, but no higher than the picture; `start` is the
+    /// lower left corner of its first letter, in pixels.
+    ///
+    /// The font has the printable characters of ASCII, `×`, `τ` and `−`; a box stands for any other character. What is
+    /// beyond an edge is cut off.
+    pub fn write(&mut self, text: &str, start: DVec2, height_px: f64, color: Color) {
+        let (width, height) = (self.size().width(), self.size().height());
+        let (columns, rows) = (f64::from(width), f64::from(height));
+        let scale = scale(height_px.clamp(0.0, rows));
+        let mut opacity = vec![0.0_f32; width as usize * height as usize];
+        let mut place = start;
+        for character in text.chars() {
+            let id = FACE.glyph_id(character);
+            // The font's own numbers are f32: of places it is told only the part within a pixel.
+            let corner = place.floor();
+            let inside = (place - corner).as_vec2();
+            let glyph = id.with_scale_and_position(scale, point(inside.x, inside.y));
+            if let Some(outlined) = FACE.outline_glyph(glyph).filter(|_| place.is_finite()) {
+                let low = outlined.px_bounds().min;
+                let corner = corner + DVec2::new(low.x.into(), low.y.into());
+                outlined.draw(|x, y, covered| {
+                    let DVec2 { x, y } = corner + DVec2::new(x.into(), y.into());
+                    if x >= 0.0 && x < columns && y >= 0.0 && y < rows {
+                        let seen = &mut opacity[y as usize * width as usize + x as usize];
+                        *seen = seen.max(covered.min(1.0));
+                    }
+                });
+            }
+            place.x += f64::from(FACE.as_scaled(scale).h_advance(id));
+        }
+        self.blend(&opacity, color);
     }
+}
+
+/// Width of a text whose capitals are so many pixels high.
+pub fn lettering_width(text: &str, height_px: f64) -> f64 {
+    let font = FACE.as_scaled(scale(height_px));
+    let advances = text
+        .chars()
+        .map(|character| font.h_advance(font.glyph_id(character)));
+    advances.map(f64::from).sum()
+}
+
+/// What the font calls its size: from the lowest descender to the highest ascender.
+fn scale(height_px: f64) -> PxScale {
+    PxScale::from(height_px as f32 / CAPITAL * FACE.height_unscaled())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::PictureSize;
+
+    fn written(text: &str, start: DVec2, height_px: f64) -> Picture {
+        let mut picture = Picture::filled(PictureSize::new(60, 40).unwrap(), Color([0; 3]));
+        picture.write(text, start, height_px, Color([255; 3]));
+        picture
+    }
+
+    fn of(character: char) -> Picture {
+        written(&character.to_string(), DVec2::new(10.0, 30.0), 20.0)
+    }
 
     #[test]
-    fn every_character_that_a_number_needs_has_strokes_of_its_own() {
-        let shapes: Vec<_> = "0123456789.-=xyzeτ"
-            .chars()
-            .map(|character| lettering(&character.to_string(), DVec2::ZERO, 6.0))
-            .collect();
+    fn characters_that_pictures_need_look_each_their_own_way() {
+        let all = (' '..='~').chain("×τ−".chars());
+        let shapes: Vec<_> = all.map(of).collect();
         for (index, shape) in shapes.iter().enumerate() {
-            assert!(!shape.is_empty());
-            assert!(!shapes[..index].contains(shape));
-            for point in shape.iter().flatten() {
-                assert!(point.x >= 0.0 && point.x <= 4.0, "{point}");
-                assert!(point.y <= 0.0 && point.y >= -6.0, "{point}");
-            }
+            assert!(!shapes[..index].contains(shape), "{index}");
         }
-        assert!(lettering(" ", DVec2::ZERO, 6.0).is_empty());
-        let second = lettering(" 1", DVec2::ZERO, 10.0);
-        assert!(second.iter().flatten().all(|point| point.x >= 8.0));
+    }
+
+    #[test]
+    fn what_the_font_lacks_is_a_box() {
+        let shape = of('ü');
+        assert_ne!(shape, of(' '));
+        for character in ['漢', 'λ', '\n', '\u{10ffff}'] {
+            assert_eq!(of(character), shape);
+        }
+        assert!(lettering_width("ü", 20.0) > 10.0);
+    }
+
+    #[test]
+    fn capitals_stand_on_the_line_and_are_as_high_as_is_said() {
+        let picture = of('H');
+        let is_lit = |y| (0..60).any(|x| picture.pixel(x, y) != [0; 3]);
+        let lit: Vec<_> = (0..40).filter(|&y| is_lit(y)).collect();
+        assert_eq!(lit, Vec::from_iter(10..30));
+        // Two uprights, each 2.7 pixels wide.
+        let full = (0..60).filter(|&x| picture.pixel(x, 15) == [255; 3]);
+        assert!((2..=4).contains(&full.count()));
+    }
+
+    #[test]
+    fn letters_follow_each_other_by_their_widths() {
+        let start = DVec2::new(3.25, 30.5);
+        let mut apart = written("A", start, 12.0);
+        let second = start + DVec2::X * lettering_width("A", 12.0);
+        apart.write("V", second, 12.0, Color([255; 3]));
+        let together = written("AV", start, 12.0);
+        // Where both touch, the one is laid over the other.
+        let off = apart.bytes().iter().zip(together.bytes());
+        assert!(off.filter(|(a, b)| a != b).count() < 12);
+        assert_eq!(lettering_width("", 12.0), 0.0);
+    }
+
+    #[test]
+    fn what_is_beyond_the_picture_is_cut_off() {
+        let nothing = written("", DVec2::ZERO, 20.0);
+        for place in [
+            DVec2::new(-100.0, 30.0),
+            DVec2::new(70.0, 30.0),
+            DVec2::new(10.0, -30.0),
+            DVec2::new(1e300, 1e300),
+            DVec2::NAN,
+            DVec2::NEG_INFINITY,
+        ] {
+            assert_eq!(written("gH", place, 20.0), nothing, "{place}");
+        }
+        for height in [0.0, -5.0, f64::NAN] {
+            assert_eq!(written("H", DVec2::new(10.0, 30.0), height), nothing);
+        }
+        let cut = written("H", DVec2::new(-4.0, 30.0), 20.0);
+        assert_ne!(cut, nothing);
+        // No higher than the picture is.
+        let huge = written("H", DVec2::new(0.0, 40.0), 1e30);
+        assert_eq!(huge, written("H", DVec2::new(0.0, 40.0), 40.0));
     }
 }

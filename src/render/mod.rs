@@ -11,9 +11,9 @@ mod caster;
 mod cone;
 mod crowd;
 mod lettering;
-mod look;
 mod paint;
 mod picture;
+mod pixel_shader;
 mod placed;
 mod ray;
 mod scenery;
@@ -26,7 +26,9 @@ mod tree;
 mod turned;
 
 pub use camera::{Camera, CameraError, MAX_PICTURE_SIDE, PictureSize, Projection};
-pub use lettering::{lettering, lettering_width};
+#[cfg(feature = "plot")]
+pub(crate) use lettering::FONT;
+pub use lettering::lettering_width;
 pub use picture::Picture;
 pub(crate) use scenery::grid_places;
 pub use scenery::{PictureOptions, Scenery, Viewpoint};

@@ -7,6 +7,7 @@ use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 
 use super::PictureSize;
+use crate::effects::byte_of_linear;
 use crate::mesh::Color;
 
 /// Red, green and blue in sRGB, one byte each, row by row from the top.
@@ -86,34 +87,13 @@ impl Picture {
 }
 
 /// A linear colour as bytes in sRGB; what is brighter than white is white.
-///
-/// # Reference
-///
-/// IEC 61966-2-1, the sRGB transfer function.
 pub(super) fn encoded(linear: Vec3) -> [u8; 3] {
-    let encode = |linear: f32| {
-        let encoded = if linear <= 0.003_130_8 {
-            12.92 * linear
-        } else {
-            1.055 * linear.powf(1.0 / 2.4) - 0.055
-        };
-        (encoded * 255.0).round() as u8
-    };
-    linear.to_array().map(encode)
+    linear.to_array().map(byte_of_linear)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn colours_are_encoded_as_they_were_decoded() {
-        for byte in 0..=255 {
-            let linear = Color([byte, 255 - byte, byte / 2]).linear();
-            assert_eq!(encoded(linear.into()), [byte, 255 - byte, byte / 2]);
-        }
-        assert_eq!(encoded(Vec3::new(7.0, -1.0, 1.0)), [255, 0, 255]);
-    }
 
     #[test]
     fn pictures_are_laid_on_each_other() {

@@ -8,9 +8,9 @@ use rayon::prelude::*;
 use super::body::{Body, Geometry, Stands};
 use super::caster::Caster;
 use super::crowd::Crowd;
-use super::look::Look;
 use super::paint::Paint;
 use super::picture::{Picture, encoded};
+use super::pixel_shader::PixelShader;
 use super::sphere::Ball;
 use super::turned::Turned;
 use super::{Camera, Strokes, Textures};
@@ -200,14 +200,14 @@ impl Scenery {
         options: PictureOptions,
         row_done: &(dyn Fn() + Sync),
     ) -> Picture {
-        let look = self.look(camera, viewpoint, options);
+        let shader = self.pixel_shader(camera, viewpoint, options);
         let size = camera.size();
         let mut bytes = vec![0; 3 * size.width() as usize * size.height() as usize];
         let rows = bytes.par_chunks_mut(3 * size.width() as usize);
         rows.enumerate().for_each(|(y, row)| {
             for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
                 let corner = DVec2::new(x as f64, y as f64);
-                let light = look.mean_light(camera, corner, grid_places(options.samples));
+                let light = shader.mean_light(camera, corner, grid_places(options.samples));
                 pixel.copy_from_slice(&encoded(light));
             }
             row_done();
@@ -224,23 +224,23 @@ impl Scenery {
         options: PictureOptions,
         places: impl Fn(usize) -> P + Sync,
     ) -> Vec<Vec3> {
-        let look = self.look(camera, viewpoint, options);
+        let shader = self.pixel_shader(camera, viewpoint, options);
         let width = camera.size().width() as usize;
         let pixels = (0..width * camera.size().height() as usize).into_par_iter();
         let light = pixels.map(|pixel| {
             let corner = DVec2::new((pixel % width) as f64, (pixel / width) as f64);
-            look.mean_light(camera, corner, places(pixel))
+            shader.mean_light(camera, corner, places(pixel))
         });
         light.collect()
     }
 
-    fn look<'a>(
+    fn pixel_shader<'a>(
         &'a self,
         camera: &'a Camera,
         viewpoint: Viewpoint,
         options: PictureOptions,
-    ) -> Look<'a> {
-        Look {
+    ) -> PixelShader<'a> {
+        PixelShader {
             crowd: Crowd::new(self.bodies.iter(), viewpoint),
             ghosts: Crowd::new(self.ghosts.iter().map(|(body, _)| body), viewpoint),
             ghost_colors: self.ghosts.iter().map(|&(_, color)| color).collect(),
@@ -302,7 +302,7 @@ impl Viewpoint<'_> {
 mod tests {
     use serde_json::json;
 
-    use super::super::body::AMBIENT;
+    use super::super::pixel_shader::AMBIENT;
     use super::*;
     use crate::render::{PictureSize, Projection};
 
@@ -370,6 +370,30 @@ mod tests {
         };
         assert_eq!(behind(true), [255; 3]);
         assert_eq!(behind(false), [0, 0, 255]);
+    }
+
+    /// Half a pixel is black and half is white: half the light, which is more than half the levels.
+    #[test]
+    fn pixels_are_means_of_linear_light() {
+        let mut scenery = Scenery::new();
+        let mut wall = square(0.0, [1.0; 4], "OPAQUE", true);
+        wall = wall.transformed(&glam::DAffine3::from_translation(DVec3::X * 100.0));
+        scenery.add_plain(&wall);
+        let size = PictureSize::new(1, 1).unwrap();
+        let projection = Projection::Pinhole {
+            vertical_fov_deg: 1.0,
+        };
+        let camera = Camera::new(size, projection, DVec3::NEG_Z).unwrap();
+        for samples in [2, 4] {
+            let options = PictureOptions {
+                samples,
+                background: Color([0; 3]),
+                wireframe: None,
+            };
+            let viewpoint = Viewpoint::Outside(DVec3::Z);
+            let picture = scenery.picture(&camera, viewpoint, options, &|| ());
+            assert_eq!(picture.pixel(0, 0), [188; 3]);
+        }
     }
 
     #[test]

@@ -46,6 +46,22 @@ pub(super) struct RestRay {
     pub(super) stretch: f64,
 }
 
+impl RestRay {
+    /// A ray that is in the rest frame as it is seen.
+    pub(super) fn unmoved(origin: DVec3, direction: DVec3) -> Self {
+        Self {
+            origin,
+            direction,
+            stretch: 1.0,
+        }
+    }
+
+    /// Frequency seen over frequency emitted: positive, and above 1 where what is seen comes closer.
+    pub(super) fn doppler(&self) -> f64 {
+        1.0 / self.stretch
+    }
+}
+
 impl Sight {
     /// How `observer`, at `proper_time` on its worldline, sees what moves along with `object`.
     pub(super) fn new(observer: &WorldLine, object: &WorldLine, proper_time: f64) -> Self {

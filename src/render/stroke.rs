@@ -115,8 +115,13 @@ impl Picture {
                 }
             }
         }
+        self.blend(&opacity, color);
+    }
+
+    /// Blends `color` in, with an opacity for each pixel.
+    pub(super) fn blend(&mut self, opacity: &[f32], color: Color) {
         let color = Vec3::from(color.linear());
-        for (pixel, opacity) in self.pixels_mut().zip(opacity) {
+        for (pixel, &opacity) in self.pixels_mut().zip(opacity) {
             if opacity > 0.0 {
                 let below = Vec3::from(Color(*pixel).linear());
                 *pixel = encoded(below.lerp(color, opacity));

@@ -7,7 +7,8 @@ use glam::{DVec2, Vec4};
 use image::RgbaImage;
 use thiserror::Error;
 
-use crate::mesh::{Color, Image, PictureError, Texture, Wrap};
+use crate::effects::linear_of_byte;
+use crate::mesh::{Image, PictureError, Texture, Wrap};
 
 /// Pixels of all textures together, unless said otherwise: 1 GiB of memory.
 const MAX_PIXELS: u64 = 1 << 28;
@@ -68,7 +69,7 @@ impl Textures {
         // Without one that every program can read there are others, which are refused by their kind.
         let image = texture.image().or(texture.images().first())?;
         let picture = self.with(|decoded| decoded.picture(image, object))?;
-        let linear = std::array::from_fn(|byte| Color([byte as u8; 3]).linear()[0]);
+        let linear = std::array::from_fn(|byte| linear_of_byte(byte as u8));
         Some(Pixels {
             image: picture,
             nearest: texture.is_magnified_by_nearest(),

@@ -17,9 +17,7 @@ use thiserror::Error;
 
 use super::panel::{Curve, FAMILY, GREY, Panel};
 use super::{CostStudy, Made, MeshCost, RayCost};
-
-/// Of DejaVu Sans what English and numbers need; `src/study/font/README.md` says where it is from.
-const FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
+use crate::render::FONT;
 
 /// The bitmap backend knows no half-covered pixels: pictures are drawn so many times larger and made smaller.
 const FINER: u32 = 4;

@@ -20,6 +20,7 @@ use super::polygon::triangulate;
 use super::text::{shown, unquoted};
 use super::uri::Folder;
 use super::{Findings, ReadError, checked};
+use crate::effects::linear_of_srgb;
 use crate::mesh::{Material, Mesh, MeshError, Model, Part};
 
 /// Bytes of a name that parts get at most: where a material of every part is behind it, the file has it once and
@@ -313,15 +314,10 @@ fn texture_coordinate(uv: &DVec2) -> Vec2 {
     }
 }
 
-/// Programs that write colours of vertices into OBJ files write them as on the screen, in sRGB (IEC
-/// 61966-2-1).
+/// Programs that write colours of vertices into OBJ files write them as on the screen, in sRGB.
 fn linear_color(srgb: DVec3) -> Vec4 {
-    let linear = |c: f64| match c {
-        c if c <= 0.04045 => c / 12.92,
-        c => ((c + 0.055) / 1.055).powf(2.4),
-    };
     let clamped = srgb.clamp(DVec3::ZERO, DVec3::ONE);
-    let [r, g, b] = clamped.to_array().map(|c| linear(c) as f32);
+    let [r, g, b] = clamped.to_array().map(|c| linear_of_srgb(c) as f32);
     Vec4::new(r, g, b, 1.0)
 }
 

@@ -13,6 +13,7 @@ use glam::{DVec3, Vec4};
 
 use super::layer::{Layer, Numbers, Scalar, layers};
 use super::{Export, WriteError};
+use crate::effects::byte_of_linear;
 use crate::mesh::Mesh;
 use crate::photosurface::Photosurface;
 
@@ -163,13 +164,8 @@ fn write_vertices(
     Ok(())
 }
 
-/// Red, green, blue and opacity as PLY's readers show them: sRGB (IEC 61966-2-1), opacity as it is.
+/// Red, green, blue and opacity as PLY's readers show them: in sRGB, opacity as it is.
 fn shown_color(linear: Vec4) -> [u8; 4] {
-    let encode = |value: f32| match value {
-        v if v <= 0.003_130_8 => 12.92 * v,
-        v => 1.055 * v.powf(1.0 / 2.4) - 0.055,
-    };
-    let shown = linear.truncate().to_array().map(encode);
-    [shown[0], shown[1], shown[2], linear.w]
-        .map(|value| (value.clamp(0.0, 1.0) * 255.0).round() as u8)
+    let [red, green, blue] = linear.truncate().to_array().map(byte_of_linear);
+    [red, green, blue, (linear.w * 255.0).round() as u8]
 }

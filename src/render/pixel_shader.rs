@@ -1,10 +1,13 @@
-//! Which colour is seen in a direction.
+//! What decides the colour of a pixel: from hits to linear light.
 
 use glam::{DVec2, DVec3, Vec3};
 
 use super::Camera;
-use super::body::{AMBIENT, Meeting};
+use super::body::Hit;
 use super::crowd::Crowd;
+
+/// How bright a surface is that the lamp only grazes.
+pub(super) const AMBIENT: f32 = 0.25;
 
 /// Most surfaces one ray of light is followed through.
 const MOST_LAYERS: usize = 64;
@@ -27,8 +30,8 @@ const WIRE: f32 = 0.7;
 /// Half the width of the edges of triangles, in pixels.
 const HALF_WIRE: f64 = 0.6;
 
-/// All that decides on the colour of a direction.
-pub(super) struct Look<'a> {
+/// What turns hits into linear light.
+pub(super) struct PixelShader<'a> {
     pub(super) crowd: Crowd<'a>,
     pub(super) ghosts: Crowd<'a>,
     pub(super) ghost_colors: Vec<Vec3>,
@@ -37,7 +40,7 @@ pub(super) struct Look<'a> {
     pub(super) wires: Option<(Vec3, &'a Camera)>,
 }
 
-impl Look<'_> {
+impl PixelShader<'_> {
     /// The linear colour of a pixel: the mean over places within it, given from its upper left corner.
     pub(super) fn mean_light(
         &self,
@@ -58,12 +61,12 @@ impl Look<'_> {
     /// The linear colour that is seen at a place of the picture, in the direction `seen`.
     fn light(&self, place: DVec2, seen: DVec3) -> Vec3 {
         let (mut light, distance) = self.solid_light(place, seen);
-        for (ghost, meeting) in self.ghosts.all(seen) {
-            let grazing = (1.0 - meeting.brightness) / (1.0 - AMBIENT);
+        for hit in self.ghosts.all(seen) {
+            let grazing = 1.0 - hit.cosine as f32;
             let opacity = GHOST[0] + GHOST[1] * grazing * grazing;
-            let behind = meeting.distance > distance;
+            let behind = hit.distance > distance;
             let veiled = if behind { GHOST_BEHIND } else { 1.0 };
-            light = light.lerp(self.ghost_colors[ghost], opacity * veiled);
+            light = light.lerp(self.ghost_colors[hit.body], opacity * veiled);
         }
         light
     }
@@ -78,32 +81,44 @@ impl Look<'_> {
             let nearest = self
                 .crowd
                 .nearest(seen, beyond, f64::MAX, self.wires.is_some());
-            let Some(meeting) = nearest else {
+            let Some(hit) = nearest else {
                 return (light + self.background * clearness, first);
             };
-            let Meeting { paint, texture, .. } = meeting;
-            let (mut color, mut opacity) = paint.color_at(texture, meeting.vertex_color);
-            if let (Some((wire, camera)), Some(triangle)) = (self.wires, meeting.triangle)
-                && is_on_edge(
-                    camera,
-                    triangle.map(|corner| corner - self.crowd.eye()),
-                    place,
-                )
-            {
-                // Not opaque: where triangles are smaller than pixels all would be wire.
-                (color, opacity) = (color.lerp(wire, WIRE), opacity.max(WIRE));
-            }
+            let (color, opacity) = self.surface(place, &hit);
             if opacity > 0.0 {
-                first = first.min(meeting.distance);
+                first = first.min(hit.distance);
             }
-            light += color * (meeting.brightness * opacity * clearness);
+            light += color * (brightness(&hit) * opacity * clearness);
             clearness *= 1.0 - opacity;
             if clearness < OPAQUE {
                 break;
             }
-            beyond = meeting.distance * STEP_BEHIND;
+            beyond = hit.distance * STEP_BEHIND;
         }
         (light, first)
+    }
+
+    /// Colour and opacity of what is hit, with the wires on it.
+    fn surface(&self, place: DVec2, hit: &Hit) -> (Vec3, f32) {
+        let (color, opacity) = hit.paint.color_at(hit.texture, hit.vertex_color);
+        let (Some((wire, camera)), Some(triangle)) = (self.wires, hit.triangle) else {
+            return (color, opacity);
+        };
+        let corners = triangle.map(|corner| corner - self.crowd.eye());
+        match is_on_edge(camera, corners, place) {
+            // Not opaque: where triangles are smaller than pixels all would be wire.
+            true => (color.lerp(wire, WIRE), opacity.max(WIRE)),
+            false => (color, opacity),
+        }
+    }
+}
+
+/// How much of its colour what is hit shows by the lamp at the eye.
+fn brightness(hit: &Hit) -> f32 {
+    debug_assert!((0.0..=1.0).contains(&hit.cosine) && hit.doppler > 0.0);
+    match hit.paint.unlit {
+        true => 1.0,
+        false => AMBIENT + (1.0 - AMBIENT) * hit.cosine as f32,
     }
 }
 
