@@ -18,33 +18,36 @@
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod effects;
-mod io;
+mod jobs;
 mod light_cone;
+mod material;
 mod mesh;
-mod photosurface;
+mod pipeline;
+#[cfg(feature = "plot")]
+mod plot;
+mod read;
 mod render;
 mod scene;
+mod shape;
 mod spacetime;
 mod study;
 mod tessellate;
+mod write;
 
 pub use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4, Vec2, Vec4};
 
-pub use io::{
-    Access, AccessorProblem, DocumentProblem, Export, FileFindings, Findings, Format, GltfFile,
-    GltfOutput, LoadError, NodeProblem, Note, ObjProblem, Playback, ReadError, Report, StageTime,
-    Target, UriProblem, WriteError, abandon_writes, destination, load_models, read_gltf_bytes,
-    read_model, read_whole, replaced_data, write_glb, write_gltf, write_ply, write_whole,
-    write_whole_gltf, write_whole_target,
-};
+pub use jobs::{FileFindings, LoadError, load_models};
 pub use light_cone::{PhotosurfaceMap, View};
-pub use mesh::{
-    AlphaMode, Appearance, Cells, Color, Cone, Count, Cuboid, Cylinder, Grid, Image, Lattice,
-    Length, Material, MaterialError, Mesh, MeshError, Model, Part, PictureError, Rod, Shape,
-    ShapeError, Sphere, Texture, Torus, Wrap,
+pub use material::{
+    AlphaMode, Image, Material, MaterialError, Model, Part, PictureError, Texture, Wrap,
 };
-pub use photosurface::{
+pub use mesh::{Mesh, MeshError};
+pub use pipeline::{
     Facts, Photosurface, Prediction, SceneFacts, Stage, VertexData, Wanted, step_label,
+};
+pub use read::{
+    Access, AccessorProblem, DocumentProblem, Findings, NodeProblem, Note, ObjProblem, ReadError,
+    UriProblem, read_gltf_bytes, read_model, read_whole,
 };
 pub use render::{
     Camera, CameraError, MAX_PICTURE_SIDE, MissingTexture, Picture, PictureOptions, PictureSize,
@@ -55,6 +58,10 @@ pub use scene::{
     MarkerRadiusError, Object, Observer, Scene, SceneError, Source, Tolerance, ToleranceError,
     UnknownAttribute, even_steps,
 };
+pub use shape::{
+    Appearance, Cells, Color, Cone, Count, Cuboid, Cylinder, Grid, Lattice, Length, Rod, Shape,
+    ShapeError, Sphere, Torus,
+};
 pub use spacetime::{Event, Lorentz, MAX_RAPIDITY, Velocity, VelocityError, WorldLine};
 pub use study::{
     CostSettings, CostStudy, Made, MeshCost, Pictures, RayCost, RaySettings, Seconds, StudyError,
@@ -63,3 +70,8 @@ pub use study::{
 #[cfg(feature = "plot")]
 pub use study::{PlotError, PlotSize};
 pub use tessellate::{Certificate, Precision, edge_gap, triangle_gap, triangle_gap_place};
+pub use write::{
+    Export, Format, GltfFile, GltfOutput, Playback, Report, StageTime, Target, WriteError,
+    abandon_writes, destination, replaced_data, write_glb, write_gltf, write_ply, write_whole,
+    write_whole_gltf, write_whole_target,
+};

@@ -48,7 +48,7 @@ fn key(edge: [DVec3; 2]) -> [[u64; 3]; 2] {
 
 #[cfg(test)]
 mod tests {
-    use crate::mesh::{Appearance, Shape};
+    use crate::shape::{Appearance, Shape};
 
     #[test]
     fn sharp_edges_are_those_of_the_shape_and_not_of_its_triangles() {

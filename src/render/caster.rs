@@ -77,9 +77,9 @@ fn places(mesh: &Mesh, corners: [u32; 3]) -> [DVec3; 3] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tree::counted;
     use super::*;
-    use crate::mesh::{Appearance, Shape};
-    use crate::render::tree::counted;
+    use crate::shape::{Appearance, Shape};
 
     fn caster(shape: Shape) -> Caster {
         let mut model = shape.model(&Appearance::default()).unwrap();

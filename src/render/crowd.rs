@@ -267,11 +267,11 @@ impl Path {
 mod tests {
     use serde_json::json;
 
+    use super::super::tree::counted;
+    use super::super::{Camera, PictureSize, Projection, Scenery, grid_places};
     use super::*;
-    use crate::mesh::{Appearance, Shape};
-    use crate::render::tree::counted;
-    use crate::render::{Camera, PictureSize, Projection, Scenery, grid_places};
     use crate::scene::{BuiltInScene, Scene, Source};
+    use crate::shape::{Appearance, Shape};
     use glam::DVec2;
 
     /// All objects of a scene of shapes at rest.

@@ -6,7 +6,7 @@ use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
 use glam::DVec2;
 
 use super::picture::Picture;
-use crate::mesh::Color;
+use crate::shape::Color;
 
 /// Of DejaVu Sans what English and numbers need, a tau, and a box; `src/render/font/README.md` says where it is from.
 pub(crate) const FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
@@ -68,8 +68,8 @@ fn scale(height_px: f64) -> PxScale {
 
 #[cfg(test)]
 mod tests {
+    use super::super::PictureSize;
     use super::*;
-    use crate::render::PictureSize;
 
     fn written(text: &str, start: DVec2, height_px: f64) -> Picture {
         let mut picture = Picture::filled(PictureSize::new(60, 40).unwrap(), Color([0; 3]));

@@ -6,7 +6,7 @@ use glam::{DAffine2, DVec2, DVec4, Vec3, Vec4};
 
 use super::Textures;
 use super::texture::Pixels;
-use crate::mesh::{AlphaMode, Material};
+use crate::material::{AlphaMode, Material};
 
 /// A material, ready to be looked at: its base colour.
 ///
@@ -90,7 +90,7 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::mesh::{Image, Texture};
+    use crate::material::{Image, Texture};
 
     /// Two pixels beside each other: black, opaque, and white, half transparent.
     fn material(sampler: Option<Value>, mode: Value, transform: Value) -> Arc<Material> {

@@ -8,7 +8,7 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use super::PictureSize;
 use crate::effects::byte_of_linear;
-use crate::mesh::Color;
+use crate::shape::Color;
 
 /// Red, green and blue in sRGB, one byte each, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -14,8 +14,10 @@ use super::pixel_shader::PixelShader;
 use super::sphere::Ball;
 use super::turned::Turned;
 use super::{Camera, Strokes, Textures};
-use crate::mesh::{Appearance, Color, Material, Mesh, Part, Shape};
+use crate::material::{Material, Part};
+use crate::mesh::Mesh;
 use crate::scene::{Object, Source};
+use crate::shape::{Appearance, Color, Shape};
 use crate::spacetime::WorldLine;
 
 /// How far facets of a round shape are from it, as a part of its size: less than a tenth of a pixel where it fills
@@ -303,8 +305,8 @@ mod tests {
     use serde_json::json;
 
     use super::super::pixel_shader::AMBIENT;
+    use super::super::{PictureSize, Projection};
     use super::*;
-    use crate::render::{PictureSize, Projection};
 
     /// A large square at `z` that faces +z, of a linear colour and an opacity.
     fn square(z: f64, base_color: [f32; 4], alpha_mode: &str, double_sided: bool) -> Part {

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::placed::{Placed, SmoothHit};
-use crate::mesh::Sphere;
+use crate::shape::Sphere;
 
 /// A sphere, or what turning and stretching makes of one.
 pub(super) struct Ball {
@@ -66,7 +66,7 @@ impl Ball {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Shape;
+    use crate::shape::Shape;
     use glam::DQuat;
 
     fn ball(radius: f64, model_to_rest: DAffine3) -> Ball {

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3, Vec3};
 
 use super::Camera;
 use super::picture::{Picture, encoded};
-use crate::mesh::Color;
+use crate::shape::Color;
 
 /// How strong a line is behind something.
 const BEHIND: f32 = 0.3;
@@ -132,8 +132,8 @@ impl Picture {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{PictureSize, Projection};
     use super::*;
-    use crate::render::{PictureSize, Projection};
 
     const WHITE: Color = Color([255; 3]);
 

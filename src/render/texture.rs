@@ -8,7 +8,7 @@ use image::RgbaImage;
 use thiserror::Error;
 
 use crate::effects::linear_of_byte;
-use crate::mesh::{Image, PictureError, Texture, Wrap};
+use crate::material::{Image, PictureError, Texture, Wrap};
 
 /// Pixels of all textures together, unless said otherwise: 1 GiB of memory.
 const MAX_PIXELS: u64 = 1 << 28;

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec2, DVec3};
 
 use super::placed::{Placed, SmoothHit};
-use crate::mesh::Band;
+use crate::shape::Band;
 
 /// A closed surface of straight bands turned about an axis, or what turning and stretching makes of it.
 pub(super) struct Turned {
@@ -96,10 +96,10 @@ fn meetings(band: &Band, start: DVec3, direction: DVec3) -> [Option<f64>; 2] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::caster::Caster;
+    use super::super::ray::Ray;
     use super::*;
-    use crate::mesh::{Appearance, Shape};
-    use crate::render::caster::Caster;
-    use crate::render::ray::Ray;
+    use crate::shape::{Appearance, Shape};
     use glam::DQuat;
 
     /// Against facets within `1.5 (1 - cos(pi / 800))`, the 1.5 being the scale: where a ray comes in at a cosine of

@@ -49,8 +49,8 @@ impl BuiltInScene {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Scene;
     use super::*;
-    use crate::scene::Scene;
 
     #[test]
     fn every_built_in_scene_is_a_scene_and_fits_the_schema() {

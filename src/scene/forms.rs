@@ -14,7 +14,7 @@ use serde::de::{Error, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::{ObjectFields, Observer, SceneFields, even_steps};
-use crate::mesh::{Cone, Cuboid, Cylinder, Grid, Lattice, Length, Rod, Shape, Sphere, Torus};
+use crate::shape::{Cone, Cuboid, Cylinder, Grid, Lattice, Length, Rod, Shape, Sphere, Torus};
 use crate::spacetime::{Velocity, VelocityError};
 
 /// A type that a scene writes as an object with keys.

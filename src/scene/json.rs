@@ -154,8 +154,8 @@ fn scene_error(json: &str, error: &serde_json::Error, at: &str) -> SceneError {
 mod tests {
     use glam::DVec3;
 
+    use super::super::Source;
     use super::*;
-    use crate::scene::Source;
 
     const OBJECTS: &str =
         r#""objects": [ { "name": "s", "shape": { "sphere": { "radius": 1 } } } ]"#;

@@ -24,7 +24,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use thiserror::Error;
 
-use crate::mesh::{Appearance, Color, Model, Shape};
+use crate::material::Model;
+use crate::shape::{Appearance, Color, Shape};
 use crate::spacetime::{Event, Velocity, WorldLine};
 use forms::{FromObject, Scale, Steps, VelocityForm};
 

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::random::Random;
 use super::true_surface::TrueSurface;
 use crate::light_cone::View;
-use crate::photosurface::{Photosurface, Stage, Wanted};
+use crate::pipeline::{Photosurface, Stage, Wanted};
 use crate::scene::Attributes;
 
 /// Places that a thread takes at a time; each lot has random numbers of its own, so that the result does not depend

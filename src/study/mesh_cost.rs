@@ -10,11 +10,11 @@ use super::measured::{Measured, measure};
 use super::memory::{peak_bytes, restart_peak};
 use super::uniform::{UniformCost, uniform_cost};
 use super::{CostSettings, StudyError};
-use crate::io::{Export, Format, write_glb};
-use crate::mesh::Model;
-use crate::photosurface::{Facts, Photosurface, Stage, Wanted};
+use crate::material::Model;
+use crate::pipeline::{Facts, Photosurface, Stage, Wanted};
 use crate::scene::{Scene, Tolerance};
 use crate::tessellate::Precision;
+use crate::write::{Export, Format, write_glb};
 
 /// What one tolerance costs, all photosurfaces of all steps together.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -6,8 +6,6 @@ mod measured;
 mod memory;
 mod mesh_cost;
 #[cfg(feature = "plot")]
-mod panel;
-#[cfg(feature = "plot")]
 mod plot;
 mod random;
 mod ray_cost;
@@ -25,10 +23,10 @@ pub use plot::{PlotError, PlotSize};
 pub use ray_cost::{Pictures, RayCost, RaySettings};
 pub use uniform::{UniformCost, UniformRun};
 
-use crate::io::WriteError;
-use crate::mesh::Model;
-use crate::photosurface::{SceneFacts, Stage};
+use crate::material::Model;
+use crate::pipeline::{SceneFacts, Stage};
 use crate::scene::{Scene, Tolerance};
+use crate::write::WriteError;
 
 /// What a study looks at, and how closely.
 #[derive(Clone, Debug)]

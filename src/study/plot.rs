@@ -15,9 +15,9 @@ use plotters::prelude::*;
 use plotters::style::register_font;
 use thiserror::Error;
 
-use super::panel::{Curve, FAMILY, GREY, Panel};
-use super::{CostStudy, Made, MeshCost, RayCost};
+use crate::plot::{Curve, FAMILY, GREY, Panel};
 use crate::render::FONT;
+use crate::study::{CostStudy, Made, MeshCost, RayCost};
 
 /// The bitmap backend knows no half-covered pixels: pictures are drawn so many times larger and made smaller.
 const FINER: u32 = 4;

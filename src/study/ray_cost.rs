@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::mesh_cost::median;
 use super::random::Random;
-use crate::photosurface::Stage;
+use crate::pipeline::Stage;
 use crate::render::{Camera, PictureOptions, Scenery, Textures, Viewpoint, grid_places};
 
 /// A reference has so many times the places of the finest picture along each side of a pixel: by theory, a mean of two is

@@ -2,8 +2,8 @@
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use crate::mesh::Shape;
 use crate::scene::{Object, Source};
+use crate::shape::Shape;
 
 /// The curved surface of a round shape, in the object's rest frame.
 pub(super) struct TrueSurface {
@@ -101,7 +101,7 @@ impl Outline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Appearance, Shape};
+    use crate::shape::{Appearance, Shape};
 
     fn object(shape: Shape) -> Object {
         Object::new("object", Source::Shape(shape, Appearance::default()))

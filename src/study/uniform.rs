@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::measured::{Pair, largest, mix};
 use super::random::Random;
 use crate::mesh::Mesh;
-use crate::photosurface::{Stage, Unrefined, Wanted};
+use crate::pipeline::{Stage, Unrefined, Wanted};
 use crate::tessellate::{Allowance, triangle_gap};
 
 /// Deeper than this nothing is divided: what an observer touches may have a gap after any number of halvings.

@@ -125,8 +125,8 @@ pub(super) fn gap_along(plane: &Plane, [a, b, c]: [&Spot; 3]) -> Along {
 
 #[cfg(test)]
 mod tests {
+    use super::super::triangle_gap;
     use super::*;
-    use crate::tessellate::triangle_gap;
 
     /// Triangles of many sizes and shapes, near and far from the foot of the plane and far outside of it.
     fn triangles() -> impl Iterator<Item = [DVec3; 3]> {

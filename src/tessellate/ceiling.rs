@@ -83,8 +83,8 @@ fn smaller(a: f64, b: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::triangle_gap;
     use super::*;
-    use crate::tessellate::triangle_gap;
 
     #[test]
     fn the_ceiling_is_above_the_gap_and_not_far() {

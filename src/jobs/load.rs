@@ -1,0 +1,119 @@
+//! The geometry of a scene's objects: files are read, shapes are made.
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::material::Model;
+use crate::read::{Access, Findings, ReadError, read_named_model};
+use crate::scene::{Scene, Source};
+use crate::shape::ShapeError;
+
+/// Why an object has no geometry.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// Its file cannot be read.
+    #[error("object \"{object}\"{}", in_file(path, source))]
+    File {
+        /// Which object.
+        object: String,
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: Box<ReadError>,
+    },
+    /// Its shape cannot be made.
+    #[error("object \"{object}\"")]
+    Shape {
+        /// Which object.
+        object: String,
+        /// What is wrong with it.
+        source: ShapeError,
+    },
+}
+
+/// The name of the file, unless its error says it already.
+fn in_file(path: &Path, source: &ReadError) -> String {
+    match source.file() {
+        Some(named) if named == path => String::new(),
+        _ => format!(": {}", path.display()),
+    }
+}
+
+/// The folder of a file with all links followed, and its name.
+fn place_of(path: &Path) -> PathBuf {
+    let folder = path
+        .parent()
+        .and_then(|folder| fs::canonicalize(folder).ok());
+    match (folder, path.file_name()) {
+        (Some(folder), Some(name)) => folder.join(name),
+        _ => path.to_owned(),
+    }
+}
+
+/// What there is to know about each of the files that objects name.
+pub type FileFindings = Vec<(PathBuf, Findings)>;
+
+/// One model for each object of a scene, in their order, and what there is to know about the files; file
+/// names are relative to `directory`, and those are read that [`Access::default`] allows. A file that several objects use
+/// is read once.
+///
+/// # Errors
+///
+/// The first file that cannot be read, or shape that cannot be made.
+pub fn load_models(
+    scene: &Scene,
+    directory: &Path,
+) -> Result<(Vec<Model>, FileFindings), LoadError> {
+    Access::default().load_models(scene, directory)
+}
+
+impl Access {
+    /// As [`load_models`]; `directory` is the folder of the scene.
+    ///
+    /// # Errors
+    ///
+    /// As [`load_models`], and a file that may not be read.
+    pub fn load_models(
+        &self,
+        scene: &Scene,
+        directory: &Path,
+    ) -> Result<(Vec<Model>, FileFindings), LoadError> {
+        let reach = self.reach(directory);
+        // By folder and name, whatever way leads to the folder.
+        let mut known: HashMap<PathBuf, Model> = HashMap::new();
+        let mut files = Vec::new();
+        let mut models = Vec::with_capacity(scene.objects().len());
+        for object in scene.objects() {
+            let model = match &object.source {
+                Source::File(file) => {
+                    let path = directory.join(file);
+                    let wrong = |source| LoadError::File {
+                        object: object.name.clone(),
+                        path: path.clone(),
+                        source: Box::new(source),
+                    };
+                    let place = place_of(&path);
+                    if !known.contains_key(&place) {
+                        let (model, found) = read_named_model(&path, &reach).map_err(wrong)?;
+                        files.push((path.clone(), found));
+                        known.insert(place.clone(), model);
+                    }
+                    known[&place].clone()
+                }
+                Source::Shape(shape, appearance) => {
+                    shape.model(appearance).map_err(|source| LoadError::Shape {
+                        object: object.name.clone(),
+                        source,
+                    })?
+                }
+                Source::Model(model) => Model::clone(model),
+            };
+            models.push(model);
+        }
+        Ok((models, files))
+    }
+}

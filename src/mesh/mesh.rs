@@ -1,0 +1,522 @@
+//! A triangle mesh at rest, checked wherever it comes from.
+
+use std::sync::{Arc, OnceLock};
+
+use glam::{DAffine3, DMat3, DVec3, DVec4, Vec2, Vec4};
+use rayon::prelude::*;
+use thiserror::Error;
+
+use crate::spacetime::unit;
+
+/// A triangle mesh: positions, indexed triangles, and attributes of its vertices.
+///
+/// Positions, normals and tangents are computed with and held in `f64`; texture coordinates and colours
+/// only travel and are held as files have them. Every constructor checks, so that indices are in
+/// range, every number is finite and every attribute has one value a vertex. A clone shares everything
+/// with its original, and a mesh shares with its images what the map leaves as it is: of a
+/// photosurface triangles, texture coordinates and colours.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Mesh {
+    positions: Arc<Vec<DVec3>>,
+    triangles: Arc<Vec<[u32; 3]>>,
+    normals: Option<Arc<Vec<DVec3>>>,
+    tangents: Option<Arc<Vec<DVec4>>>,
+    texture_coordinates: Vec<Arc<Vec<Vec2>>>,
+    colors: Option<Arc<Vec<Vec4>>>,
+    /// Of the positions, once someone has asked.
+    extent: Remembered<Option<Extent>>,
+}
+
+/// Why data does not make a [`Mesh`].
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// More vertices than a `u32` index can tell apart.
+    #[error("{0} vertices, expected at most {max}", max = u32::MAX)]
+    TooManyVertices(usize),
+    /// A triangle names a vertex that is not there.
+    #[error("triangle {triangle} uses vertex {index}, expected an index below {vertices}")]
+    Index {
+        /// Which triangle, from 0.
+        triangle: usize,
+        /// What it says.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// An attribute with too many or too few values.
+    #[error("{attribute} has {found} values, expected one for each of {vertices} vertices")]
+    Count {
+        /// Which attribute.
+        attribute: &'static str,
+        /// How many values it has.
+        found: usize,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// NaN or infinity.
+    #[error("{attribute} of vertex {vertex} is {value}, expected finite numbers")]
+    NotFinite {
+        /// Which attribute.
+        attribute: &'static str,
+        /// Which vertex, from 0.
+        vertex: usize,
+        /// The offending value.
+        value: String,
+    },
+}
+
+impl Mesh {
+    /// A mesh of `triangles` between `positions`, counter-clockwise seen from outside.
+    ///
+    /// # Errors
+    ///
+    /// A position that is not finite, an index out of range, too many vertices.
+    pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        let vertices = positions.len();
+        check_triangles(&triangles, vertices)?;
+        check("POSITION", &positions, vertices, |p| p.is_finite())?;
+        Ok(Self {
+            positions: positions.into(),
+            triangles: triangles.into(),
+            ..Self::default()
+        })
+    }
+
+    /// With one normal a vertex; they are brought to unit length, zero ones stay zero.
+    ///
+    /// # Errors
+    ///
+    /// A wrong count or a value that is not finite.
+    pub fn with_normals(mut self, mut normals: Vec<DVec3>) -> Result<Self, MeshError> {
+        check("NORMAL", &normals, self.positions.len(), |n| n.is_finite())?;
+        change(&mut normals, unit_or_zero);
+        self.normals = Some(normals.into());
+        Ok(self)
+    }
+
+    /// With one tangent a vertex: direction, brought to unit length, and the sign of the bitangent.
+    ///
+    /// # Errors
+    ///
+    /// A wrong count or a value that is not finite.
+    pub fn with_tangents(mut self, mut tangents: Vec<DVec4>) -> Result<Self, MeshError> {
+        check("TANGENT", &tangents, self.positions.len(), |t| {
+            t.is_finite()
+        })?;
+        change(&mut tangents, |t| {
+            unit_or_zero(t.truncate()).extend(if t.w < 0.0 { -1.0 } else { 1.0 })
+        });
+        self.tangents = Some(tangents.into());
+        Ok(self)
+    }
+
+    /// With one more set of texture coordinates, the next `TEXCOORD_n`.
+    ///
+    /// # Errors
+    ///
+    /// A wrong count or a value that is not finite.
+    pub fn with_texture_coordinates(mut self, coordinates: Vec<Vec2>) -> Result<Self, MeshError> {
+        check("TEXCOORD", &coordinates, self.positions.len(), |c| {
+            c.is_finite()
+        })?;
+        self.texture_coordinates.push(coordinates.into());
+        Ok(self)
+    }
+
+    /// With one colour a vertex: linear red, green, blue and opacity, each from 0 to 1.
+    ///
+    /// # Errors
+    ///
+    /// A wrong count or a value that is not finite.
+    pub fn with_colors(mut self, colors: Vec<Vec4>) -> Result<Self, MeshError> {
+        check("COLOR_0", &colors, self.positions.len(), |c| c.is_finite())?;
+        self.colors = Some(colors.into());
+        Ok(self)
+    }
+
+    /// Places of the vertices.
+    pub fn positions(&self) -> &[DVec3] {
+        &self.positions
+    }
+
+    /// Corners of the triangles, counter-clockwise seen from outside.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Unit normals, or zero where the source has none that means anything.
+    pub fn normals(&self) -> Option<&[DVec3]> {
+        self.normals.as_deref().map(Vec::as_slice)
+    }
+
+    /// Unit tangents with the sign of the bitangent.
+    pub fn tangents(&self) -> Option<&[DVec4]> {
+        self.tangents.as_deref().map(Vec::as_slice)
+    }
+
+    /// All sets of texture coordinates.
+    pub fn texture_coordinates(&self) -> &[Arc<Vec<Vec2>>] {
+        &self.texture_coordinates
+    }
+
+    /// The triangles as all meshes share them that differ in geometry alone.
+    pub(crate) fn shared_triangles(&self) -> &Arc<Vec<[u32; 3]>> {
+        &self.triangles
+    }
+
+    /// The colours, likewise.
+    pub(crate) fn shared_colors(&self) -> Option<&Arc<Vec<Vec4>>> {
+        self.colors.as_ref()
+    }
+
+    /// Linear colours.
+    pub fn colors(&self) -> Option<&[Vec4]> {
+        self.colors.as_deref().map(Vec::as_slice)
+    }
+
+    /// The smallest and the largest corner of the box around the vertices; `None` without vertices.
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        self.extent().map(|extent| (extent.low, extent.high))
+    }
+
+    /// Whether all vertices are somewhere, which only a transform can change.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.extent().is_none_or(|extent| extent.is_finite)
+    }
+
+    fn extent(&self) -> Option<Extent> {
+        *self.extent.0.get_or_init(|| {
+            // The same jobs for any number of threads, for which of 0 and -0 is less depends on their order.
+            let jobs = self.positions.par_chunks(VALUES_PER_JOB).map(Extent::of);
+            let extents: Vec<Extent> = jobs.collect();
+            extents.into_iter().reduce(Extent::with)
+        })
+    }
+
+    /// The mesh moved, turned, scaled or mirrored; mirrored triangles keep their outside.
+    #[must_use]
+    pub fn transformed(mut self, transform: &DAffine3) -> Self {
+        if *transform == DAffine3::IDENTITY {
+            return self;
+        }
+        self.extent = Remembered::default();
+        change_shared(&mut self.positions, |position| {
+            transform.transform_point3(position)
+        });
+        let linear = transform.matrix3;
+        if linear == DMat3::IDENTITY {
+            return self;
+        }
+        // The cofactor matrix is the inverse transpose up to a factor, and exists for singular ones too.
+        let cofactor = DMat3::from_cols(
+            linear.y_axis.cross(linear.z_axis),
+            linear.z_axis.cross(linear.x_axis),
+            linear.x_axis.cross(linear.y_axis),
+        );
+        let mirror = linear.determinant() < 0.0;
+        let sign = if mirror { -1.0 } else { 1.0 };
+        if let Some(normals) = &mut self.normals {
+            change_shared(normals, |normal| unit_or_zero(cofactor * normal * sign));
+        }
+        if let Some(tangents) = &mut self.tangents {
+            change_shared(tangents, |tangent| {
+                unit_or_zero(linear * tangent.truncate()).extend(tangent.w * sign)
+            });
+        }
+        if mirror {
+            change_shared(&mut self.triangles, |[a, b, c]| [a, c, b]);
+        }
+        self
+    }
+
+    /// A mesh of data that is known to fit: indices in range, one value a vertex, all finite.
+    pub(crate) fn from_parts(
+        positions: Vec<DVec3>,
+        triangles: Vec<[u32; 3]>,
+        normals: Option<Vec<DVec3>>,
+        tangents: Option<Vec<DVec4>>,
+        texture_coordinates: Vec<Vec<Vec2>>,
+        colors: Option<Vec<Vec4>>,
+    ) -> Self {
+        debug_assert!(
+            triangles
+                .iter()
+                .flatten()
+                .all(|&index| (index as usize) < positions.len())
+        );
+        Self {
+            positions: positions.into(),
+            triangles: triangles.into(),
+            normals: normals.map(Into::into),
+            tangents: tangents.map(Into::into),
+            texture_coordinates: texture_coordinates.into_iter().map(Into::into).collect(),
+            colors: colors.map(Into::into),
+            extent: Remembered::default(),
+        }
+    }
+
+    /// The same mesh with other geometry; `positions` and the rest have one value a vertex, as before.
+    pub(crate) fn with_geometry(
+        &self,
+        positions: Vec<DVec3>,
+        normals: Option<Vec<DVec3>>,
+        tangents: Option<Vec<DVec4>>,
+    ) -> Self {
+        debug_assert_eq!(positions.len(), self.positions.len());
+        Self {
+            positions: positions.into(),
+            triangles: self.triangles.clone(),
+            normals: normals.map(Into::into),
+            tangents: tangents.map(Into::into),
+            texture_coordinates: self.texture_coordinates.clone(),
+            colors: self.colors.clone(),
+            extent: Remembered::default(),
+        }
+    }
+
+    /// The mesh with the normals of its flat triangles, each with three vertices of its own: what
+    /// glTF asks for where a source has no normals. Vertices in no triangle vanish.
+    ///
+    /// # Errors
+    ///
+    /// More corners than a `u32` index can tell apart.
+    pub fn with_flat_normals(self) -> Result<Self, MeshError> {
+        let corners = self.triangles.as_flattened();
+        if corners.len() > u32::MAX as usize {
+            return Err(MeshError::TooManyVertices(corners.len()));
+        }
+        let jobs = self.triangles.par_iter().with_min_len(VALUES_PER_JOB);
+        let normals = jobs.map(|&[a, b, c]| {
+            let [a, b, c] = [a, b, c].map(|index| self.positions[index as usize]);
+            // A triangle without area has no normal; any unit vector keeps files valid.
+            [unit((b - a).cross(c - a)).unwrap_or(DVec3::Y); 3]
+        });
+        let normals: Vec<[DVec3; 3]> = normals.collect();
+        let new_triangles = (0..corners.len() as u32 / 3).into_par_iter();
+        Ok(Self {
+            normals: Some(normals.into_flattened().into()),
+            positions: pick(&self.positions, corners),
+            triangles: new_triangles
+                .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
+                .collect::<Vec<_>>()
+                .into(),
+            tangents: self
+                .tangents
+                .as_ref()
+                .map(|tangents| pick(tangents, corners)),
+            texture_coordinates: self
+                .texture_coordinates
+                .iter()
+                .map(|set| pick(set, corners))
+                .collect(),
+            colors: self.colors.as_ref().map(|colors| pick(colors, corners)),
+            extent: Remembered::default(),
+        })
+    }
+}
+
+/// Where some positions are.
+#[derive(Clone, Copy, Debug)]
+struct Extent {
+    low: DVec3,
+    high: DVec3,
+    is_finite: bool,
+}
+
+impl Extent {
+    fn of(positions: &[DVec3]) -> Self {
+        let first = Self::of_one(positions[0]);
+        let others = positions.iter().copied().map(Self::of_one);
+        others.fold(first, Self::with)
+    }
+
+    fn of_one(position: DVec3) -> Self {
+        Self {
+            low: position,
+            high: position,
+            is_finite: position.is_finite(),
+        }
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+            is_finite: self.is_finite & other.is_finite,
+        }
+    }
+}
+
+/// Something known of a mesh that is no part of what it is: all are alike.
+#[derive(Clone, Debug, Default)]
+struct Remembered<T>(OnceLock<T>);
+
+impl<T> PartialEq for Remembered<T> {
+    fn eq(&self, _other: &Self) -> bool {
+        true
+    }
+}
+
+/// Values a thread takes at a time: enough to outweigh handing them over.
+const VALUES_PER_JOB: usize = 4096;
+
+fn pick<T: Copy + Send + Sync>(values: &[T], indices: &[u32]) -> Arc<Vec<T>> {
+    let jobs = indices.par_iter().with_min_len(VALUES_PER_JOB);
+    let picked: Vec<T> = jobs.map(|&index| values[index as usize]).collect();
+    picked.into()
+}
+
+/// Makes something else of every value.
+fn change<T: Copy + Send + Sync>(values: &mut [T], new: impl Fn(T) -> T + Sync) {
+    let jobs = values.par_iter_mut().with_min_len(VALUES_PER_JOB);
+    jobs.for_each(|value| *value = new(*value));
+}
+
+/// Makes something else of every value; those who share the values keep them as they are.
+fn change_shared<T: Copy + Send + Sync>(values: &mut Arc<Vec<T>>, new: impl Fn(T) -> T + Sync) {
+    match Arc::get_mut(values) {
+        Some(values) => change(values, new),
+        None => {
+            let jobs = values.par_iter().with_min_len(VALUES_PER_JOB);
+            let changed: Vec<T> = jobs.map(|&value| new(value)).collect();
+            *values = changed.into();
+        }
+    }
+}
+
+/// A vector brought to unit length, or zero where there is none.
+///
+/// Where nothing overflows and nothing is lost below the smallest numbers, a root does without the detour by powers
+/// of two and is as good.
+#[inline]
+pub(crate) fn unit_or_zero(vector: DVec3) -> DVec3 {
+    const ORDINARY: std::ops::Range<f64> = 1e-100..1e100;
+    let square = vector.length_squared();
+    match ORDINARY.contains(&square) {
+        true => vector * square.sqrt().recip(),
+        false => unit(vector).unwrap_or(DVec3::ZERO),
+    }
+}
+
+/// Whether triangles use nothing but the vertices that there are.
+pub(crate) fn check_triangles(triangles: &[[u32; 3]], vertices: usize) -> Result<(), MeshError> {
+    if vertices > u32::MAX as usize {
+        return Err(MeshError::TooManyVertices(vertices));
+    }
+    let is_wrong = |corners: &[u32; 3]| corners.iter().any(|&i| i as usize >= vertices);
+    let jobs = triangles.par_iter().with_min_len(VALUES_PER_JOB);
+    let Some(triangle) = jobs.position_first(is_wrong) else {
+        return Ok(());
+    };
+    let mut corners = triangles[triangle].into_iter();
+    let index = corners.find(|&i| i as usize >= vertices);
+    Err(MeshError::Index {
+        triangle,
+        index: index.expect("one of them is"),
+        vertices,
+    })
+}
+
+fn check<T: std::fmt::Display + Sync>(
+    attribute: &'static str,
+    values: &[T],
+    vertices: usize,
+    is_finite: impl Fn(&T) -> bool + Sync,
+) -> Result<(), MeshError> {
+    if values.len() != vertices {
+        return Err(MeshError::Count {
+            attribute,
+            found: values.len(),
+            vertices,
+        });
+    }
+    let jobs = values.par_iter().with_min_len(VALUES_PER_JOB);
+    match jobs.position_first(|value| !is_finite(value)) {
+        Some(vertex) => Err(MeshError::NotFinite {
+            attribute,
+            vertex,
+            value: values[vertex].to_string(),
+        }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sheet() -> Mesh {
+        let position = |i: u32| DVec3::new((f64::from(i) * 0.37).sin(), f64::from(i), 1.0);
+        let positions: Vec<DVec3> = (0..10_000).map(position).collect();
+        let normals = positions.clone();
+        let triangles = (0..9_998).map(|i| [i, i + 1, i + 2]).collect();
+        let mesh = Mesh::new(positions, triangles).unwrap();
+        mesh.with_normals(normals).unwrap()
+    }
+
+    /// In units of rounding, half of `EPSILON`: the square of the length is off by at most 3, its root by 2.5, the
+    /// reciprocal by 3.5, the result by 4.5; the long way has one division more and takes the length of its
+    /// result: 5.5. The length found of a unit vector is off by another 2.5.
+    #[test]
+    fn the_short_way_to_a_unit_vector_is_as_good_as_the_long_one() {
+        for i in 0..100_000u32 {
+            let angle = f64::from(i) * 0.618;
+            let scale = 10f64.powi((i % 120) as i32 - 60);
+            let vector = DVec3::new(angle.sin(), (3.1 * angle).cos(), (7.7 * angle).sin()) * scale;
+            let (short, long) = (unit_or_zero(vector), unit(vector).unwrap());
+            assert!((short - long).abs().max_element() <= 5.0 * f64::EPSILON);
+            assert!((short.length() - 1.0).abs() <= 3.5 * f64::EPSILON);
+        }
+        assert_eq!(unit_or_zero(DVec3::ZERO), DVec3::ZERO);
+        assert_eq!(unit_or_zero(DVec3::X * 1e-310), DVec3::X);
+        assert_eq!(unit_or_zero(DVec3::NEG_Y * 1e300), DVec3::NEG_Y);
+    }
+
+    #[test]
+    fn bounds_are_those_of_all_vertices() {
+        let mesh = sheet();
+        let first = mesh.positions()[0];
+        let fold = |corner: fn(DVec3, DVec3) -> DVec3| {
+            let positions = mesh.positions().iter().copied();
+            positions.fold(first, corner)
+        };
+        let expected = Some((fold(DVec3::min), fold(DVec3::max)));
+        assert_eq!(mesh.bounds(), expected);
+        let moved = mesh.transformed(&DAffine3::from_translation(DVec3::X));
+        let corners = expected.map(|(low, high)| (low + DVec3::X, high + DVec3::X));
+        assert_eq!(moved.bounds(), corners);
+        assert_eq!(Mesh::default().bounds(), None);
+    }
+
+    #[test]
+    fn what_is_moved_leaves_its_original_where_it_is() {
+        let original = sheet();
+        let turn = DAffine3::from_rotation_z(0.3);
+        let mirror = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+        for transform in [turn, mirror, DAffine3::from_translation(DVec3::Y)] {
+            let copy = original.clone();
+            assert_eq!(original.positions().as_ptr(), copy.positions().as_ptr());
+            let moved = copy.transformed(&transform);
+            assert_eq!(original, sheet());
+            // The same as of a mesh that nobody shares.
+            assert_eq!(moved, sheet().transformed(&transform));
+            assert_eq!(
+                moved.positions()[77],
+                transform.transform_point3(original.positions()[77])
+            );
+        }
+        let same = original.clone().transformed(&DAffine3::IDENTITY);
+        assert_eq!(original.positions().as_ptr(), same.positions().as_ptr());
+    }
+
+    #[test]
+    fn a_vertex_that_a_transform_makes_nothing_of_is_noticed() {
+        let far = Mesh::new(vec![DVec3::ZERO, DVec3::splat(1e300)], vec![]).unwrap();
+        assert!(far.is_finite());
+        let mut transform = DAffine3::from_scale(DVec3::new(1.0, 1e300, 1.0));
+        transform.matrix3.x_axis.y = -1e300;
+        // Infinity less infinity, which bounds need not show.
+        assert!(!far.transformed(&transform).is_finite());
+    }
+}

@@ -1,0 +1,337 @@
+//! What the tolerances of a scene will take, and what a budget leaves of them.
+//!
+//! Predictions steer, counts hold: aims are loosened until about as much is predicted as there is, and then each object
+//! is granted so many triangles at each step that all together are within the budget, whatever was predicted.
+
+use super::plan::Predicted;
+use super::stage::Placed;
+use super::{Stage, Wanted};
+use crate::material::Part;
+use crate::mesh::Mesh;
+use crate::tessellate::shares;
+
+/// Room that a budget leaves for predictions, which are good to about a half (`tests/it/cli/accuracy.rs`).
+const PREDICTION_ROOM: f64 = 1.2;
+
+/// Of more triangles than this, all steps together, a prediction looks at as many, evenly spread, but at each step at
+/// as many as [`LEAST_LOOKED_AT`] at least.
+const TRIANGLES_LOOKED_AT: usize = 50_000;
+const LEAST_LOOKED_AT: usize = 5_000;
+
+/// Of more steps than this a prediction looks at as many, evenly spread.
+const STEPS_LOOKED_AT: usize = 32;
+
+/// What is there before any refinement may be more than a budget: then no tolerance fits it.
+const MAX_LOOSENING: f64 = 1e300;
+
+/// A share of the budget is used up to this part at least, if so many steps are enough to come near to it.
+const USED: f64 = 0.9;
+const MAX_HALVINGS: usize = 12;
+
+/// Where even the loosest aim takes more than there is, so many times as much is spent: the last few per cent would
+/// take a tolerance that says nothing any more.
+const SPENT_AT_LEAST: f64 = 1.05;
+
+/// What one object will take, known in a fraction of the time that it takes to make it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prediction {
+    /// About how many triangles its photosurfaces will have, all steps together.
+    pub triangles: f64,
+    /// How many there are before any refinement, all steps together: of a round shape, as fine as its tolerance asks
+    /// for. In certificates `triangles_in`.
+    pub triangles_in: f64,
+    /// Whether its tolerance can be kept, by as many triangles as that.
+    ///
+    /// Not where rounding alone takes more, where the observer touches a surface and the tolerance is an angle, or
+    /// where nothing is to be subdivided.
+    pub reachable: bool,
+}
+
+/// How many triangles an object may have beyond those of its source.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Granted {
+    /// At each step.
+    steps: Vec<u64>,
+    /// Of one mesh for all steps.
+    together: u64,
+}
+
+impl Stage {
+    /// What each object will take, in the order of the scene.
+    pub fn predictions(&self, wanted: Wanted) -> Vec<Prediction> {
+        let objects = 0..self.objects.len();
+        objects
+            .map(|object| {
+                let predicted = self.predict(object, wanted);
+                let most = self.most_triangles(object);
+                Prediction {
+                    triangles: predicted.triangles.min(most),
+                    triangles_in: predicted.before.min(most),
+                    reachable: predicted.reachable && predicted.triangles <= most,
+                }
+            })
+            .collect()
+    }
+
+    /// The same stage with looser aims, so that all its photosurfaces together have at most `most` triangles; and for
+    /// each object how many times looser, 1 where it is left alone and infinity where no aim that was tried is loose
+    /// enough.
+    ///
+    /// Objects that need less than an equal share of what is left by the others get what they need; the others
+    /// share the rest, and within each the largest gaps are closed first. Certificates are still against the
+    /// tolerances of the scene. Triangles that a source has stay, even if they are more: those of its meshes, and of a
+    /// round shape as many as the coarsest of its kind has.
+    ///
+    /// The limit holds exactly, also where a prediction is wrong: what is granted is known beforehand, and refinement
+    /// stops when it is used up. Of [`Stage::morphing`] it counts the one mesh of each part.
+    #[must_use]
+    pub fn within_budget(mut self, wanted: Wanted, most: u64) -> (Self, Vec<f64>) {
+        for placed in &mut self.objects {
+            placed.granted = None;
+        }
+        let needed = |stage: &Self, object| stage.predict(object, wanted).needed();
+        let mut objects: Vec<(usize, f64)> = (0..self.objects.len())
+            .map(|object| (object, needed(&self, object)))
+            .collect();
+        objects.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+        let mut left = most as f64;
+        for (done, &(object, mut need)) in objects.iter().enumerate() {
+            let share = left / (objects.len() - done) as f64;
+            if wanted.subdivide && need > share {
+                need = self.loosen(object, share, need, needed);
+            }
+            left = (left - need).max(0.0);
+        }
+        let loosening = self.objects.iter().map(|placed| match placed.loosening {
+            MAX_LOOSENING.. => f64::INFINITY,
+            times => times,
+        });
+        let loosening = loosening.collect();
+        (self.granting(wanted, most), loosening)
+    }
+
+    /// The same stage with at most `most` triangles, or those of the source, and the same aims.
+    pub(crate) fn granting(mut self, wanted: Wanted, most: u64) -> Self {
+        if !wanted.subdivide {
+            return self;
+        }
+        let steps = self.scene.steps().len();
+        let sources: Vec<u64> = (self.objects.iter())
+            .map(|placed| placed.source_triangles)
+            .collect();
+        let all: u64 = sources.iter().sum();
+        // What each object needs at each step beyond its source.
+        let needs: Vec<Vec<f64>> = (0..self.objects.len())
+            .map(|object| {
+                let at_some = self.predict_some(object, wanted);
+                let need = |step: usize| {
+                    let last = (steps - 1).max(1) as f64;
+                    let at = step as f64 / last * (at_some.len() - 1) as f64;
+                    let need = at_some[at.round() as usize].needed() - sources[object] as f64;
+                    // Infinity and NaN are as good as all that there is.
+                    if need < most as f64 {
+                        need.max(0.0)
+                    } else {
+                        most as f64
+                    }
+                };
+                (0..steps).map(need).collect()
+            })
+            .collect();
+        let at_steps: Vec<(f64, u64)> = (needs.iter().zip(&sources))
+            .flat_map(|(needs, &source)| needs.iter().map(move |&need| (need, source)))
+            .collect();
+        let at_steps = granted(
+            most.saturating_sub(all.saturating_mul(steps as u64)),
+            &at_steps,
+        );
+        let together: Vec<(f64, u64)> = (needs.iter().zip(&sources))
+            .map(|(needs, &source)| (needs.iter().sum(), source))
+            .collect();
+        let together = granted(most.saturating_sub(all), &together);
+        let granted = at_steps.chunks(steps).zip(together);
+        for (placed, (steps, together)) in self.objects.iter_mut().zip(granted) {
+            let steps = steps.to_vec();
+            placed.granted = Some(Granted { steps, together });
+        }
+        self
+    }
+
+    /// The most that an object can have at all steps together.
+    fn most_triangles(&self, object: usize) -> f64 {
+        let placed = &self.objects[object];
+        let source = placed.source_triangles as f64;
+        let steps = 0..self.scene.steps().len();
+        steps.map(|step| source + placed.granted(step) as f64).sum()
+    }
+
+    /// Loosens the aim of one object until it needs no more than its share, and hardly less; what it needs then. An
+    /// object that needs more however loose it is comes near to that.
+    fn loosen(
+        &mut self,
+        object: usize,
+        mut share: f64,
+        mut need: f64,
+        needed: impl Fn(&Self, usize) -> f64,
+    ) -> f64 {
+        self.objects[object].loosening = MAX_LOOSENING;
+        let least = needed(self, object);
+        if need <= least {
+            // What is there takes all of it, and is kept whatever the budget.
+            self.objects[object].loosening = 1.0;
+            return need;
+        }
+        share = share.max(SPENT_AT_LEAST * least);
+        let mut too_tight = 1.0;
+        let mut loosening: f64 = 1.0;
+        self.objects[object].loosening = loosening;
+        while need > share && loosening < MAX_LOOSENING {
+            too_tight = loosening;
+            // Triangles go with the inverse of the tolerance, but for those that are there anyway.
+            loosening = (loosening * (need / share).max(2.0)).min(MAX_LOOSENING);
+            self.objects[object].loosening = loosening;
+            need = needed(self, object);
+        }
+        for _ in 0..MAX_HALVINGS {
+            if need > share || need >= USED * share {
+                break;
+            }
+            // The roots first: the product might overflow.
+            let between = too_tight.sqrt() * loosening.sqrt();
+            self.objects[object].loosening = between;
+            let need_between = needed(self, object);
+            if need_between > share {
+                too_tight = between;
+            } else {
+                (loosening, need) = (between, need_between);
+            }
+        }
+        self.objects[object].loosening = loosening;
+        need
+    }
+
+    /// All steps together.
+    fn predict(&self, object: usize, wanted: Wanted) -> Predicted {
+        let at_some = self.predict_some(object, wanted);
+        let each = self.scene.steps().len() as f64 / at_some.len() as f64;
+        let mut sum = Predicted {
+            triangles: 0.0,
+            before: 0.0,
+            reachable: true,
+        };
+        for predicted in at_some {
+            sum.triangles += predicted.triangles * each;
+            sum.before += predicted.before * each;
+            sum.reachable &= predicted.reachable;
+        }
+        sum
+    }
+
+    /// Each step, or some of many, evenly spread.
+    fn predict_some(&self, object: usize, wanted: Wanted) -> Vec<Predicted> {
+        let (object, placed) = (&self.scene.objects()[object], &self.objects[object]);
+        let steps = self.scene.steps().len();
+        let looked_at = steps.min(STEPS_LOOKED_AT);
+        let triangles = (TRIANGLES_LOOKED_AT / looked_at).max(LEAST_LOOKED_AT);
+        let sketch = (wanted.subdivide.then(|| placed.sketch(triangles))).flatten();
+        let (placed, weights) = match &sketch {
+            Some((sketch, weights)) => (sketch, weights.clone()),
+            None => (placed, vec![1.0; placed.parts.len()]),
+        };
+        let predict = |index: usize| {
+            let step = index * (steps - 1) / (looked_at - 1).max(1);
+            let plan = self.plan(object, placed, step, wanted);
+            plan.predict(wanted, &weights)
+        };
+        (0..looked_at).map(predict).collect()
+    }
+}
+
+/// Of what there is, what each needs and then shares of the rest, or shares of all in proportion to what each needs. With
+/// each need, the number of triangles of its source.
+fn granted(whole: u64, needs: &[(f64, u64)]) -> Vec<u64> {
+    let needed: Vec<f64> = needs.iter().map(|(need, _)| need.ceil()).collect();
+    let all: f64 = needed.iter().sum();
+    if all >= whole as f64 {
+        return shares(whole, &needed);
+    }
+    let needed = needed.into_iter().map(|need| need as u64);
+    let rest = whole - all as u64;
+    // What was not predicted may be anywhere.
+    let weights = needs
+        .iter()
+        .map(|&(need, source)| need + source as f64 + 1.0);
+    let rest = shares(rest, &weights.collect::<Vec<f64>>());
+    needed.zip(rest).map(|(need, more)| need + more).collect()
+}
+
+impl Predicted {
+    /// With room for what a prediction may miss.
+    fn needed(&self) -> f64 {
+        self.before + PREDICTION_ROOM * (self.triangles - self.before)
+    }
+}
+
+impl Placed {
+    /// How many more there may be at a step.
+    pub(super) fn granted(&self, step: usize) -> u64 {
+        let granted = self.granted.as_ref();
+        granted.map_or(u64::MAX, |granted| granted.steps[step])
+    }
+
+    /// How many more there may be where all steps share one mesh.
+    pub(super) fn granted_together(&self) -> u64 {
+        self.granted
+            .as_ref()
+            .map_or(u64::MAX, |granted| granted.together)
+    }
+
+    /// A sample of about `most` triangles where there are more, and for each part of how many each is a sample.
+    fn sketch(&self, most: usize) -> Option<(Self, Vec<f64>)> {
+        let count = |part: &Part| part.mesh().triangles().len();
+        let all: usize = self.parts.iter().map(|(_, part)| count(part)).sum();
+        if all <= most || self.shaped.is_some() {
+            return None;
+        }
+        let share = most as f64 / all as f64;
+        let parts = self.parts.iter().map(|(name, part)| {
+            let triangles = part.mesh().triangles();
+            let sampled = (triangles.len() as f64 * share).ceil() as usize;
+            let weight = triangles.len() as f64 / sampled as f64;
+            (
+                (name.clone(), part.with_mesh(sample(part.mesh(), sampled))),
+                weight,
+            )
+        });
+        let (parts, weights) = parts.unzip();
+        let sketch = Self {
+            parts,
+            shaped: None,
+            loosening: self.loosening,
+            source_triangles: self.source_triangles,
+            granted: None,
+        };
+        Some((sketch, weights))
+    }
+}
+
+/// So many triangles of a mesh, spread by multiples of the golden ratio: in step with no pattern of rows.
+fn sample(mesh: &Mesh, triangles: usize) -> Mesh {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let all = mesh.triangles();
+    let chosen = (0..triangles).map(|index| {
+        let place = (index as f64 * GOLDEN).fract() * all.len() as f64;
+        all[(place as usize).min(all.len() - 1)]
+    });
+    let corners = chosen
+        .flatten()
+        .map(|corner| mesh.positions()[corner as usize]);
+    let positions: Vec<_> = corners.collect();
+    let indices = (0..positions.len() as u32).step_by(3);
+    let sampled = Mesh::new(
+        positions,
+        indices.map(|i| [i, i + 1, i + 2]).collect::<Vec<_>>(),
+    );
+    let sampled = sampled.and_then(Mesh::with_flat_normals);
+    sampled.expect("finite positions and indices in range, as in the mesh")
+}

@@ -1,0 +1,11 @@
+//! OBJ files and their material libraries.
+
+mod lines;
+mod model;
+mod mtl;
+mod mtl_map;
+mod mtl_pack;
+mod plain;
+mod polygon;
+
+pub(super) use model::read_obj_bytes;

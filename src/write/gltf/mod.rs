@@ -1,0 +1,14 @@
+//! glTF 2.0, as GLB and in two files.
+
+mod animation;
+mod convert;
+mod document;
+mod file;
+mod glb;
+mod materials;
+mod output;
+mod pair;
+
+pub use file::{GltfFile, write_glb, write_gltf};
+pub use output::GltfOutput;
+pub use pair::{replaced_data, write_whole_gltf};

@@ -1,0 +1,21 @@
+//! Photosurfaces as files: glTF, GLB, PLY, and the JSON report.
+
+mod error;
+mod export;
+mod file;
+mod gltf;
+mod layer;
+mod pack;
+mod ply;
+mod range;
+mod report;
+mod size;
+mod text;
+
+pub use error::WriteError;
+pub use export::{Export, Playback};
+pub use file::{Target, abandon_writes, destination, write_whole, write_whole_target};
+pub use gltf::{GltfFile, GltfOutput, replaced_data, write_glb, write_gltf, write_whole_gltf};
+pub use ply::write_ply;
+pub use report::{Report, StageTime};
+pub use size::Format;

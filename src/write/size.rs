@@ -1,0 +1,178 @@
+//! How large a file will be, before anything is computed: what is too large is refused in good time.
+
+use std::collections::HashSet;
+
+use super::WriteError;
+use crate::material::Part;
+use crate::mesh::Mesh;
+use crate::pipeline::Stage;
+use crate::scene::{Attributes, Object, Scene, Source};
+
+/// A format that photosurfaces are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Binary glTF, one file.
+    Glb,
+    /// glTF as JSON with its data in a file beside it.
+    Gltf,
+    /// Binary PLY.
+    Ply,
+}
+
+impl Format {
+    /// What a file of the scene holds of every vertex: what the scene asks for, and in a PLY the Doppler factor.
+    pub fn attributes(self, scene: &Scene) -> Attributes {
+        let asked_for = scene.attributes();
+        Attributes {
+            doppler: asked_for.doppler || self == Self::Ply,
+            ..asked_for
+        }
+    }
+
+    /// How many bytes a file of `steps` steps of the stage has at least: its numbers and images, without the
+    /// words around them, which are few.
+    ///
+    /// # Errors
+    ///
+    /// The format cannot hold so many, whatever else there is in the file.
+    ///
+    /// # Accuracy
+    ///
+    /// Never more than the file will have: what would fit is not refused.
+    pub fn least_size(self, stage: &Stage, steps: usize) -> Result<u64, WriteError> {
+        // Other shapes are made as fine as their tolerance asks for, which may be next to nothing.
+        let fixed = |object: &Object| match &object.source {
+            Source::Shape(shape, _) => shape.has_resolution(),
+            Source::File(_) | Source::Model(_) => true,
+        };
+        let parts: Vec<&Part> = stage
+            .objects()
+            .filter(|(object, _)| fixed(object))
+            .flat_map(|(_, parts)| parts.iter().map(|(_, part)| part))
+            .collect();
+        let scalars = self.attributes(stage.scene()).scalars();
+        match self {
+            Self::Glb | Self::Gltf => {
+                let bytes = least_gltf(&parts, steps as u64, scalars);
+                let limit = u64::from(u32::MAX);
+                if self == Self::Glb && bytes > limit {
+                    return Err(WriteError::TooLarge {
+                        format: "GLB",
+                        bytes,
+                        limit,
+                    });
+                }
+                Ok(bytes)
+            }
+            Self::Ply => least_ply(&parts, steps as u64, scalars),
+        }
+    }
+}
+
+/// What differs from step to step is counted for each, what steps share once.
+fn least_gltf(parts: &[&Part], steps: u64, scalars: u64) -> u64 {
+    let mut shared = HashSet::new();
+    let mut once = |address: usize, bytes: usize| match shared.insert(address) {
+        true => bytes as u64,
+        false => 0,
+    };
+    let mut bytes = 0;
+    for part in parts {
+        let mesh = part.mesh();
+        let vectors = 12 + mesh.normals().map_or(0, |_| 12) + mesh.tangents().map_or(0, |_| 16);
+        let of_vertex = vectors + 4 * scalars;
+        bytes += steps * of_vertex * mesh.positions().len() as u64;
+        bytes += once(
+            mesh.triangles().as_ptr() as usize,
+            size_of_val(mesh.triangles()),
+        );
+        for set in mesh.texture_coordinates() {
+            bytes += once(set.as_ptr() as usize, size_of_val(&set[..]));
+        }
+        if let Some(colors) = mesh.colors() {
+            bytes += once(colors.as_ptr() as usize, 4 * colors.len());
+        }
+        let textures = part.material.iter().flat_map(|m| m.textures());
+        for image in textures.flat_map(|texture| texture.images()) {
+            bytes += once(image.bytes().as_ptr() as usize, image.bytes().len());
+        }
+    }
+    bytes
+}
+
+fn least_ply(parts: &[&Part], steps: u64, scalars: u64) -> Result<u64, WriteError> {
+    let count = |of: fn(&Mesh) -> usize| {
+        let each = parts.iter().map(|part| of(part.mesh()) as u64);
+        steps * each.sum::<u64>()
+    };
+    let vertices = count(|mesh| mesh.positions().len());
+    if vertices > u64::from(u32::MAX) {
+        return Err(WriteError::TooManyVertices(vertices as usize));
+    }
+    let color = match parts.iter().any(|part| part.mesh().colors().is_some()) {
+        true => 4,
+        false => 0,
+    };
+    // Three f64 and three f32 a vertex, a byte and three u32 a triangle.
+    Ok((36 + 4 * scalars + color) * vertices + 13 * count(|mesh| mesh.triangles().len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::super::{Export, write_glb, write_ply};
+    use super::*;
+    use crate::jobs::load_models;
+    use crate::material::Model;
+    use crate::pipeline::Wanted;
+    use crate::scene::Observer;
+
+    #[test]
+    fn the_least_size_is_just_below_that_of_the_file() {
+        let scene = Scene::from_json(
+            r##"{ "attributes": ["doppler", "rest_position"], "objects": [
+                { "name": "a", "shape": { "sphere": { "radius": 1 } }, "checker": "#ffffff", "position": [0, 3, 0] },
+                { "name": "b", "shape": { "torus": { "major_radius": 2, "minor_radius": 1 } } } ] }"##,
+        )
+        .unwrap();
+        let (models, _) = load_models(&scene, "".as_ref()).unwrap();
+        // The same as geometry that is at hand: no tolerance makes it coarser.
+        let own = |(object, model): (&Object, &Model)| Object {
+            source: Source::Model(Arc::new(model.clone())),
+            ..object.clone()
+        };
+        let objects = scene.objects().iter().zip(&models).map(own).collect();
+        let asked_for = scene.attributes();
+        let scene = Scene::new(Observer::default(), objects).unwrap();
+        let scene = scene.with_attributes(asked_for);
+        let stage = Stage::new(scene.with_steps(vec![0.0, 1.0, 2.0]).unwrap(), models);
+        let wanted = Wanted {
+            attributes: Format::Ply.attributes(stage.scene()),
+            ..Wanted::default()
+        };
+        let photosurfaces: Vec<_> = (0..3)
+            .flat_map(|step| stage.photosurfaces(step, wanted))
+            .collect();
+        let export = Export {
+            scene: &stage.facts(),
+            marker: None,
+            photosurfaces: &photosurfaces,
+            playback: None,
+        };
+        let (mut glb, mut ply) = (vec![], vec![]);
+        write_glb(&export, &mut glb).unwrap();
+        write_ply(&export, &mut ply).unwrap();
+        for (format, file, words) in [(Format::Glb, glb, 12_000), (Format::Ply, ply, 500)] {
+            let least = format.least_size(&stage, 3).unwrap();
+            let rest = file.len() as u64 - least;
+            assert!(rest < words, "{format:?}: {rest} bytes more than {least}");
+        }
+        let [one, two] = [1, 2].map(|steps| Format::Glb.least_size(&stage, steps).unwrap());
+        let most = 1 + (u64::from(u32::MAX) - one) / (two - one);
+        assert!(Format::Glb.least_size(&stage, most as usize).is_ok());
+        assert!(Format::Glb.least_size(&stage, most as usize + 1).is_err());
+        assert!(Format::Gltf.least_size(&stage, 34_000).is_ok());
+        assert!(Format::Ply.least_size(&stage, 800_000).is_err());
+    }
+}
