@@ -241,6 +241,7 @@ pub(crate) fn position<T>(list: &mut Vec<Arc<T>>, item: &Arc<T>) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Image;
     use super::*;
     use serde_json::json;
 

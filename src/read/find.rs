@@ -104,7 +104,7 @@ mod tests {
         assert_eq!(all_found(), without);
         assert!(without.iter().all(|(_, notes)| notes.is_empty()));
         // It is found where it is allowed.
-        let access = crate::io::read::Access {
+        let access = crate::read::Access {
             folders: vec![all.path().to_owned()],
             ..Default::default()
         };

@@ -183,8 +183,8 @@ mod tests {
             for up in [true, false] {
                 let lid = lid(2.0, 0.5, up, segments, 4.0);
                 let mesh = revolve(&[lid]).unwrap().into_mesh().unwrap();
-                crate::mesh::shape::witness::assert_well_made(&mesh);
-                let area = crate::mesh::shape::witness::area(&mesh);
+                crate::shape::witness::assert_well_made(&mesh);
+                let area = crate::shape::witness::area(&mesh);
                 let sector = TAU / segments as f64;
                 let polygon = 2.0 * segments as f64 * sector.sin();
                 assert!(

@@ -260,6 +260,7 @@ fn check_proportions(lengths: &[f64]) -> Result<(), ShapeError> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::witness;
     use super::*;
 
     /// One of each.

@@ -241,7 +241,7 @@ mod tests {
         let scene = r#"{ "observer": { "velocity": { "beta": 0.8 } },
             "objects": [ { "name": "box", "shape": { "box": { "size": [1, 1, 1] } }, "position": [0, 0, -2] } ] }"#;
         let scene = Scene::from_json(scene).unwrap();
-        let (models, _) = crate::io::load_models(&scene, ".".as_ref()).unwrap();
+        let (models, _) = crate::jobs::load_models(&scene, ".".as_ref()).unwrap();
         let settings = CostSettings {
             tolerances: vec![Tolerance::Relative(1e-1), Tolerance::Relative(1e-9)],
             most_triangles: 1000,

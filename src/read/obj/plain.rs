@@ -281,7 +281,7 @@ mod tests {
         assert_eq!(notes, other_notes, "{name}");
         assert_eq!(one, other, "{name}");
         // Of zeros the sign counts too.
-        let bits = |model: &crate::mesh::Model| {
+        let bits = |model: &crate::material::Model| {
             let parts = model.parts.iter();
             let numbers = parts.flat_map(|part| part.mesh().positions());
             let numbers = numbers.flat_map(|p| p.to_array().map(f64::to_bits));
