@@ -494,10 +494,11 @@ fn write_file(
 ) -> anyhow::Result<()> {
     if is_stdout(path) {
         print(|out| {
-            Ok(match format {
+            match format {
                 Format::Ply => work.ply(steps, out)?,
                 Format::Glb | Format::Gltf => work.glb(steps, Target::Stream(out))?,
-            })
+            }
+            Ok(())
         })?;
         return Ok(before_it_appears(work)?);
     }

@@ -130,7 +130,7 @@ fn check_is_of_the_format_that_is_to_be_written() {
     // Too fast and too small are no matter of distance, and a PLY holds these too.
     for (flags, word) in [
         ("square.obj --rapidity 300", "smaller rapidity"),
-        ("--rapidity 350", "smaller rapidity"),
+        ("ball.json --rapidity 350", "smaller rapidity"),
         ("tiny.obj --beta 0.5", "too small"),
     ] {
         let glb = [

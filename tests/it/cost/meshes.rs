@@ -142,7 +142,7 @@ fn uniform_subdivision_needs_more_close_by() {
 fn round_shapes_are_measured_against_the_true_surface() {
     let workplace = Workplace::new();
     workplace.write("scene.json", BALL_AT_REST);
-    let study = study(&workplace, "scene.json --tolerances abs:1e-2,abs:1e-3");
+    let study = study(&workplace, "scene.json -q --tolerances abs:1e-2,abs:1e-3");
     for row in rows(&study) {
         assert_consistent(row);
         assert_eq!(number(row, "/made/gap"), 0.0);
@@ -413,8 +413,11 @@ fn errors_name_the_flag() {
         ("--plot-size 639x480", ["--plot-size", "at least 640 x 480"]),
         ("--plot-size 960", ["--plot-size", "expected WxH"]),
         ("--json - --csv -", ["--json and --csv", "stdout"]),
-        ("--json a --csv ./a", ["./a", "an output too"]),
-        ("--json a_rays --csv a", ["a_rays", "an output too"]),
+        ("--json a --csv ./a", ["./a", "written over another output"]),
+        (
+            "--json a_rays --csv a",
+            ["a_rays", "written over another output"],
+        ),
         ("--csv -", ["--csv", "choose one with --only"]),
         ("--pixel-samples 2,1,2", ["--pixel-samples", "2 rays"]),
         ("--pixel-samples 0", ["--pixel-samples", "expected 1 to 16"]),

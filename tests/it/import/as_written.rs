@@ -247,7 +247,8 @@ fn a_primitive_without_positions_is_skipped() {
     assert_eq!(read_json(&json).expect("a cube").1, [note]);
     json["meshes"][0]["primitives"][0]["attributes"] = json!({});
     let error = read_json(&json).expect_err("nothing");
-    assert!(error.ends_with(note), "{error}");
+    let of_both = "; 2 primitives, the first meshes[0].primitives[0] (mesh \"cube\"): has no POSITION, skipped";
+    assert!(error.ends_with(of_both), "{error}");
 }
 
 /// All whole numbers of a JSON text as some programs write them.

@@ -231,10 +231,8 @@ fn a_mesh_without_primitives_is_named() {
         "meshes": [{ "name": "gone", "primitives": [] }, { "primitives": [] }] }"#;
     let error = read_gltf_bytes(json, Path::new("")).expect_err("no triangles");
     let message = error.to_string();
-    for named in ["meshes[0] (mesh \"gone\")", "meshes[1]"] {
-        let note = format!("{named}: has no triangles, skipped");
-        assert!(message.contains(&note), "{message}");
-    }
+    let note = "; 2 meshes, the first meshes[0] (mesh \"gone\"): has no triangles, skipped";
+    assert!(message.ends_with(note), "{message}");
 }
 
 #[test]
