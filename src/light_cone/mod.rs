@@ -5,10 +5,12 @@
 
 mod batch;
 mod block;
+mod extremes;
 mod map;
 mod plain;
 mod view;
 
-pub(crate) use batch::{Batch, Extremes};
+pub(crate) use batch::Batch;
+pub(crate) use extremes::Extremes;
 pub use map::PhotosurfaceMap;
 pub use view::View;

@@ -5,10 +5,9 @@ use std::sync::Arc;
 
 use glam::{DAffine2, DVec2};
 use serde_json::Value;
-use thiserror::Error;
 
 use super::properties::{check, names_of_extensions, tex_coord, texture_index};
-use super::{Texture, extension_names, retain_textures};
+use super::{MaterialError, Texture, extension_names, retain_textures};
 
 /// A material in the words of glTF, with its textures.
 ///
@@ -43,32 +42,6 @@ pub enum AlphaMode {
     Mask(f64),
     /// Blended with what is behind.
     Blend,
-}
-
-/// Why properties do not make a [`Material`].
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum MaterialError {
-    /// Something of another kind, or a number out of range.
-    #[error("{place} is {found}, expected {expected}")]
-    Property {
-        /// Path to the property.
-        place: String,
-        /// What stands there, as JSON.
-        found: String,
-        /// What glTF has there.
-        expected: &'static str,
-    },
-    /// A texture that is not there.
-    #[error("{slot} asks for texture {index}, expected one of {count}")]
-    Texture {
-        /// Name of the property.
-        slot: String,
-        /// Which one.
-        index: u64,
-        /// How many there are.
-        count: usize,
-    },
 }
 
 impl Material {

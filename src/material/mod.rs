@@ -4,14 +4,16 @@
 //! program does not know travels as well as what it knows, and no number changes on the way. What the program
 //! needs itself is read out of those words.
 
+mod error;
 mod material;
 mod part;
 mod pixels;
 mod properties;
 mod texture;
 
+pub use error::MaterialError;
 pub(crate) use material::position;
-pub use material::{AlphaMode, Material, MaterialError};
+pub use material::{AlphaMode, Material};
 pub use part::{Model, Part};
 pub use pixels::PictureError;
 pub(crate) use pixels::decode;

@@ -2,13 +2,13 @@
 
 use glam::{DVec2, DVec3, Vec4};
 
+use super::bounds::Bounds;
 use super::caster::{Caster, MeshHit};
 use super::paint::Paint;
 use super::placed::SmoothHit;
 use super::ray::Ray;
 use super::sight::{RestRay, Sight};
 use super::sphere::Ball;
-use super::tree::Bounds;
 use super::turned::Turned;
 use crate::mesh::Mesh;
 use crate::spacetime::{WorldLine, unit};

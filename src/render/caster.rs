@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
+use super::bounds::Bounds;
 use super::ray::Ray;
-use super::tree::{Bounds, Tree};
+use super::tree::Tree;
 use crate::mesh::Mesh;
 
 /// A mesh that rays are cast at.

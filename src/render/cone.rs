@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::tree::Bounds;
+use super::bounds::Bounds;
 use crate::spacetime::unit;
 
 /// A body is within this part of the ball that is looked for.

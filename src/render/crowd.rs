@@ -7,10 +7,11 @@ use glam::DVec3;
 
 use super::Viewpoint;
 use super::body::{Body, BodyHit, Hit, Stands};
+use super::bounds::Bounds;
 use super::cone::Cone;
 use super::ray::Ray;
 use super::sight::{RestRay, Sight};
-use super::tree::{Bounds, Tree};
+use super::tree::Tree;
 use crate::spacetime::WorldLine;
 
 /// A distance at rest that is turned into one that is seen and back may be rounded by this part.

@@ -6,8 +6,8 @@
 
 use glam::{DMat3, DVec3};
 
+use super::bounds::Bounds;
 use super::ray::{Ray, Slabs};
-use super::tree::Bounds;
 use crate::spacetime::unit;
 
 /// A triangle whose longest edge is longer than so many of its heights is a sliver.

@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 
+use super::bounds::Bounds;
 use super::ray::{Ray, Slabs};
 use super::slant::{Slant, Sliver};
 
@@ -30,13 +31,6 @@ const NEAR_MARGIN: f64 = 1.0 + 1e-12;
 
 /// No slanted box.
 const NONE: u32 = u32::MAX;
-
-/// A box along the axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bounds {
-    pub(super) low: DVec3,
-    pub(super) high: DVec3,
-}
 
 /// Boxes within boxes, around things that have numbers.
 pub(super) struct Tree {
@@ -63,51 +57,6 @@ struct Slivers<'a> {
     corners: &'a dyn Fn(u32) -> [DVec3; 3],
     /// For every triangle.
     slivers: Vec<Option<Sliver>>,
-}
-
-impl Bounds {
-    const NOTHING: Self = Self {
-        low: DVec3::INFINITY,
-        high: DVec3::NEG_INFINITY,
-    };
-
-    pub(super) fn around(places: impl Iterator<Item = DVec3>) -> Self {
-        places.fold(Self::NOTHING, |bounds, place| Self {
-            low: bounds.low.min(place),
-            high: bounds.high.max(place),
-        })
-    }
-
-    pub(super) fn of_all(all: impl Iterator<Item = Self>) -> Self {
-        all.fold(Self::NOTHING, Self::with)
-    }
-
-    fn with(self, other: Self) -> Self {
-        Self {
-            low: self.low.min(other.low),
-            high: self.high.max(other.high),
-        }
-    }
-
-    pub(super) fn middle(&self) -> DVec3 {
-        // Halves first: the sum of two large numbers may be none.
-        self.low / 2.0 + self.high / 2.0
-    }
-
-    /// Centre and radius of a ball around it.
-    pub(super) fn ball(&self) -> (DVec3, f64) {
-        (self.middle(), self.low.distance(self.high) / 2.0)
-    }
-
-    /// Half of its surface; of what is flat, its area.
-    pub(super) fn half_area(&self) -> f64 {
-        let size = self.high - self.low;
-        size.x * size.y + size.y * size.z + size.z * size.x
-    }
-
-    fn holds(&self, place: DVec3) -> bool {
-        place.cmpge(self.low).all() && place.cmple(self.high).all()
-    }
 }
 
 impl Tree {

@@ -19,6 +19,7 @@ mod gap;
 mod minimum;
 mod nearest;
 mod outline;
+mod pieces;
 mod queue;
 mod refine;
 mod room;

@@ -7,8 +7,9 @@ use super::Allowance;
 use super::edge::{EDGE_SHARE, point_between};
 use super::edges::{Edges, Origin, canonical, sides};
 use super::outline::{Divided, Need, Outline};
+use super::pieces::{Corner, Pieces};
 use super::room::Room;
-use super::sky::{Corner, Grant, Pieces, divide};
+use super::sky::{Grant, divide};
 use super::survey::{Survey, survey};
 use crate::mesh::Mesh;
 

@@ -20,6 +20,7 @@ use spade::{
 use super::along::{Spot, gap_along};
 use super::chart::{Chart, Plane};
 use super::gap::triangle_gap_place;
+use super::pieces::{Corner, Pieces};
 use super::queue::{Queue, Task};
 use super::strip::strip;
 use super::{Allowance, triangle_gap};
@@ -39,32 +40,6 @@ const CHARTS: i32 = 8;
 /// Where the points that are granted are too few, so many times as much is allowed; then 4 times that factor, and so on.
 const LOOSER: f64 = 4.0;
 const LOOSEST: f64 = 1e100;
-
-/// A point on the boundary of the triangle, or inside.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Corner {
-    /// Weights of the triangle's corners.
-    pub(super) weights: DVec3,
-    /// Offset from the observer.
-    pub(super) offset: DVec3,
-    /// Bit `i` for a point on the side from corner `i` to the next; corners have two.
-    pub(super) sides: u8,
-}
-
-/// What a triangle was divided into.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Pieces {
-    /// Weights of the points inside; they follow those of the boundary.
-    pub(super) inside: Vec<DVec3>,
-    /// Triangles between the points of the boundary, in their order, and those inside.
-    pub(super) triangles: Vec<[u32; 3]>,
-    /// The largest gap of any of them.
-    pub(super) gap: f64,
-    /// Whether every gap is within what is allowed.
-    pub(super) complete: bool,
-    /// Whether more points would have been added if more had been granted.
-    pub(super) is_short: bool,
-}
 
 /// How many points a triangle may have inside.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! A triangle too thin to be triangulated on the sky.
 
 use super::Allowance;
-use super::sky::{Corner, Pieces};
+use super::pieces::{Corner, Pieces};
 
 /// A triangle so thin that it has no plane, or none that numbers can tell: its two long sides joined by a strip.
 pub(super) fn strip(boundary: &[Corner], allowance: &Allowance) -> Pieces {

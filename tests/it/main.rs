@@ -69,3 +69,4 @@ mod cost {
 mod crosscheck;
 mod fuzz_corpus;
 mod regression;
+mod rooms;

@@ -6,7 +6,7 @@
 //! extensions without regard to what they mean; it refuses accessors without a buffer view, animations
 //! by extensions, and scenes without nodes.
 
-use std::collections::{BTreeSet, HashSet};
+use std::collections::HashSet;
 use std::ops::Range;
 
 use gltf::binary::{ChunkType, Error as GlbProblem};
@@ -15,8 +15,8 @@ use gltf::json::{Root, Value, mesh::Semantic};
 use serde::Deserialize;
 
 use super::extensions;
-use super::mend::{drop_nulls, mend};
-use crate::material::extension_names;
+use super::looks::Looks;
+use super::mend::mend;
 use crate::read::bytes::Bytes;
 use crate::read::note::Note;
 use crate::read::quota::Quota;
@@ -38,16 +38,6 @@ pub(super) struct Document<'a> {
     pub(super) quota: Quota,
     /// How many zeros may be made where it has no data.
     pub(super) zeros: Quota,
-}
-
-/// What surfaces look like, in the words of the file.
-pub(super) struct Looks {
-    pub(super) materials: Vec<Value>,
-    pub(super) textures: Vec<Value>,
-    pub(super) samplers: Vec<Value>,
-    pub(super) images: Vec<Value>,
-    /// Extensions that the file cannot do without.
-    pub(super) required: Vec<String>,
 }
 
 /// The transform of a node relative to its parent, with all digits that the file has.
@@ -110,36 +100,6 @@ pub(super) fn read_document<'a>(
         quota: Quota::of(size),
         zeros: Quota::of_zeros(size),
     })
-}
-
-impl Looks {
-    fn new(root: &Value, required: Vec<String>) -> Self {
-        let list = |key: &str| {
-            let mut list = root.get(key).cloned().unwrap_or_default();
-            drop_nulls(&mut list);
-            let items = list.as_array_mut().map(std::mem::take);
-            items.unwrap_or_default()
-        };
-        Self {
-            materials: list("materials"),
-            textures: list("textures"),
-            samplers: list("samplers"),
-            images: list("images"),
-            required,
-        }
-    }
-
-    /// The names of all extensions that say what surfaces look like.
-    pub(super) fn extensions(&self) -> BTreeSet<String> {
-        let lists = [
-            &self.materials,
-            &self.textures,
-            &self.samplers,
-            &self.images,
-        ];
-        let all = lists.into_iter().flatten();
-        all.flat_map(extension_names).collect()
-    }
 }
 
 /// Whether something is a GLB file, by its first bytes.

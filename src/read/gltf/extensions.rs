@@ -6,7 +6,7 @@ use gltf::json::Root;
 use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::Checked;
 
-use super::document::Looks;
+use super::looks::Looks;
 use crate::read::ReadError;
 use crate::read::note::{Note, add_note};
 

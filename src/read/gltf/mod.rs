@@ -6,6 +6,7 @@ mod document;
 mod extensions;
 mod extras;
 mod instances;
+mod looks;
 mod materials;
 mod mend;
 mod model;

@@ -5,6 +5,7 @@ mod model;
 mod mtl;
 mod mtl_map;
 mod mtl_pack;
+mod packing;
 mod plain;
 mod polygon;
 

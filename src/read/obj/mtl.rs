@@ -11,7 +11,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::mtl_map::{Map, Pictures};
-use super::mtl_pack::Packing;
+use super::packing::Packing;
 use crate::material::{Material, Texture, position};
 use crate::read::ReadError;
 use crate::read::error::reason;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::mtl_pack::Key;
+use super::packing::Key;
 use crate::material::{Image, Texture};
 use crate::read::error::reason;
 use crate::read::find::{find, slashed};

@@ -6,38 +6,18 @@
 //! for opacity its alpha is taken if it is not opaque everywhere.
 
 use std::io::Cursor;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use image::imageops::{FilterType, resize};
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb, RgbImage, Rgba, RgbaImage};
 
 use super::mtl_map::{Map, Pictures};
+use super::packing::Packing;
 use crate::material::{Image, Texture};
 use crate::read::error::reason;
 use crate::read::note::{Note, add_note};
 use crate::read::uri::Folder;
-
-/// Which two maps are put together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Packing {
-    /// The base colour, white where there is no picture of it, and the opacity.
-    Opacity,
-    /// The roughness and the metalness, of which one may be missing.
-    Gloss,
-}
-
-impl Packing {
-    pub(super) fn statements(self) -> [&'static str; 2] {
-        match self {
-            Self::Opacity => ["map_Kd", "map_d"],
-            Self::Gloss => ["map_Pr", "map_Pm"],
-        }
-    }
-}
-
-/// What a packed texture is made of: the files and whether it ends at its edge.
-pub(super) type Key = (Packing, [Option<PathBuf>; 2], bool);
 
 /// A texture of two maps, and which of them are in it.
 pub(super) type Packed = (Arc<Texture>, [bool; 2]);

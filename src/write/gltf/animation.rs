@@ -3,34 +3,17 @@
 //! What Blender, three.js and VTK play, found by trying: `KHR_node_visibility` and several scenes are read by
 //! next to no one, while a scale of 0 hides and morph targets morph in all three.
 
-use std::collections::HashMap;
-
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index, animation};
 use serde_json::{Value, json};
 
 use super::document::{Document, Use};
 use super::file::GltfFile;
+use super::tracks::{Keys, Tracks};
 use crate::pipeline::{Facts, Photosurface, step_label};
 use crate::write::WriteError;
 use crate::write::layer::Layer;
 use crate::write::pack::Bounds;
-
-/// What the one animation of a file is made of.
-#[derive(Default)]
-pub(super) struct Tracks {
-    channels: Vec<animation::Channel>,
-    samplers: Vec<animation::Sampler>,
-    /// Those that are used again: by the frame that is shown, or by how many targets there are weights for.
-    keys: HashMap<usize, Keys>,
-}
-
-/// Times and what holds there.
-#[derive(Clone, Copy)]
-struct Keys {
-    times: Index<json::Accessor>,
-    values: Index<json::Accessor>,
-}
 
 impl GltfFile<'_> {
     /// Shows a node during the frame of its step alone.

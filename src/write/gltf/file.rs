@@ -77,7 +77,7 @@ fn write(export: &Export<'_>, output: GltfOutput<'_>) -> Result<(), WriteError> 
 pub struct GltfFile<'a> {
     pub(super) document: Document<'a>,
     pub(super) scene: SceneFacts,
-    pub(super) tracks: super::animation::Tracks,
+    pub(super) tracks: super::tracks::Tracks,
     materials: Materials,
     attributes: Attributes,
     playback: Option<Playback>,

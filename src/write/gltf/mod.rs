@@ -8,6 +8,7 @@ mod glb;
 mod materials;
 mod output;
 mod pair;
+mod tracks;
 
 pub use file::{GltfFile, write_glb, write_gltf};
 pub use output::GltfOutput;
