@@ -38,12 +38,12 @@ pub(super) struct Outline {
     pub(super) needs: Vec<Vec<Need>>,
     /// How many triangles more there may be inside.
     pub(super) more: u64,
-    /// How many more are foreseen inside.
+    /// How many more are predicted inside.
     inside: f64,
 }
 
 impl Outline {
-    /// With the allowance, or one so much larger that edges and what is foreseen inside are within the limit, and hardly
+    /// With the allowance, or one so much larger that edges and what is predicted inside are within the limit, and hardly
     /// larger than that takes.
     pub(super) fn within(
         meshes: &[&Mesh],
@@ -120,7 +120,7 @@ impl Outline {
         })
     }
 
-    /// How many triangles more are foreseen, on edges and inside.
+    /// How many triangles more are predicted, on edges and inside.
     fn used(&self, most_more: u64) -> f64 {
         (most_more - self.more) as f64 + self.inside
     }

@@ -34,7 +34,7 @@ pub(crate) struct Refined {
 /// or in several; attributes are interpolated, directions brought to unit length. Same result for any number of threads.
 ///
 /// All together have at most `most_more` triangles more than before. Where that is too little, edges and
-/// triangles alike aim at gaps larger by one factor, or triangles whose need was not foreseen stop when their share is
+/// triangles alike aim at gaps larger by one factor, or triangles whose need was not predicted stop when their share is
 /// used up; no cracks appear.
 pub(crate) fn refine(
     meshes: &[&Mesh],
