@@ -53,7 +53,7 @@ pub use render::{
 pub use scene::{
     Attribute, Attributes, BUILT_IN_SCENES, BuiltInScene, InvalidScene, MarkerRadius,
     MarkerRadiusError, Object, Observer, Scene, SceneError, Source, Tolerance, ToleranceError,
-    UnknownAttribute, even_steps,
+    Unit, UnknownAttribute, even_steps,
 };
 pub use spacetime::{Event, Lorentz, MAX_RAPIDITY, Velocity, VelocityError, WorldLine};
 pub use study::{

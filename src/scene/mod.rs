@@ -13,7 +13,7 @@ pub use attributes::{Attribute, Attributes, UnknownAttribute};
 pub use built_in::{BUILT_IN_SCENES, BuiltInScene};
 pub use json::SceneError;
 pub use marker::{MarkerRadius, MarkerRadiusError};
-pub use tolerance::{Tolerance, ToleranceError};
+pub use tolerance::{Tolerance, ToleranceError, Unit};
 
 use std::collections::HashSet;
 use std::path::PathBuf;

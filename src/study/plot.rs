@@ -18,6 +18,7 @@ use thiserror::Error;
 use super::panel::{Curve, FAMILY, GREY, Panel};
 use super::{CostStudy, Made, MeshCost, RayCost};
 use crate::render::FONT;
+use crate::scene::Unit;
 
 /// The bitmap backend knows no half-covered pixels: pictures are drawn so many times larger and made smaller.
 const FINER: u32 = 4;
@@ -170,9 +171,9 @@ impl CostStudy {
         let times = made(|made| made.seconds.photosurface);
         let (&tightest, &slowest) = (theory.last()?, times.last()?);
         let tolerance = match self.unit? {
-            "relative" => "tolerance, of the diagonal",
-            "absolute" => "tolerance, a length",
-            _ => "tolerance, degrees",
+            Unit::Relative => "tolerance, of the diagonal",
+            Unit::Absolute => "tolerance, a length",
+            Unit::Degrees => "tolerance, degrees",
         };
         let panel = |y_text, through, curves| Panel {
             x_text: tolerance,

@@ -172,5 +172,5 @@ fn scene_of(mesh: &Mesh, observer: Observer) -> Scene {
     let object = Object::new("lone", Source::Model(Arc::new(model)));
     Scene::new(observer, vec![object])
         .unwrap()
-        .with_tolerance(Tolerance::Relative(1e-3))
+        .with_tolerance(Tolerance::relative(1e-3).unwrap())
 }
