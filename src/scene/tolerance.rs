@@ -26,8 +26,11 @@ pub enum Unit {
     Degrees,
 }
 
-/// How far, at most, a mesh is to be from the true photosurface: a finite number greater than zero, in some unit, and
-/// at most 90 of degrees.
+/// How far, at most, a mesh is to be from the true photosurface.
+///
+/// # Units
+///
+/// A finite number greater than zero of some [`Unit`]; at most 90 degrees.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
 #[schemars(with = "ToleranceForm")]
 pub struct Tolerance {
