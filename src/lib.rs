@@ -55,8 +55,9 @@ pub use render::{
 };
 pub use scene::{
     Attribute, Attributes, BUILT_IN_SCENES, BuiltInScene, InvalidScene, MarkerRadius,
-    MarkerRadiusError, Object, Observer, Scene, SceneError, Source, Tolerance, ToleranceError,
-    UnknownAttribute, even_steps,
+    MarkerRadiusError, Object, Observer, Place, PlaceError, Rotation, RotationError, Scale, Scene,
+    SceneError, Source, Time, TimeError, Tolerance, ToleranceError, Unit, UnknownAttribute,
+    even_steps,
 };
 pub use shape::{
     Appearance, Cells, Color, Cone, Count, Cuboid, Cylinder, Grid, Lattice, Length, Rod, Shape,

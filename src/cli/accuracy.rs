@@ -277,12 +277,12 @@ pub(super) fn tolerance(text: &str) -> anyhow::Result<Tolerance> {
             .with_context(|| format!("\"{text}\" is not a number (expected e.g. 0.5)"))
     };
     let tolerance = match text.split_once(':') {
-        None => Tolerance::Relative(number(text)?),
-        Some(("abs", length)) => Tolerance::Absolute(number(length)?),
-        Some(("deg", degrees)) => Tolerance::Angle(number(degrees)?),
+        None => Tolerance::relative(number(text)?),
+        Some(("abs", length)) => Tolerance::absolute(number(length)?),
+        Some(("deg", degrees)) => Tolerance::degrees(number(degrees)?),
         Some((unit, _)) => bail!("unknown unit \"{unit}\", expected 1e-3, abs:0.01 or deg:0.02"),
     };
-    Ok(tolerance.checked()?)
+    Ok(tolerance?)
 }
 
 #[cfg(test)]
@@ -303,13 +303,25 @@ mod tests {
 
     #[test]
     fn tolerances_are_read_in_their_three_units() {
-        assert_eq!(tolerance("1e-3").unwrap(), Tolerance::Relative(1e-3));
-        assert_eq!(tolerance("abs:0.5").unwrap(), Tolerance::Absolute(0.5));
-        assert_eq!(tolerance("deg:0.02").unwrap(), Tolerance::Angle(0.02));
+        assert_eq!(
+            tolerance("1e-3").unwrap(),
+            Tolerance::relative(1e-3).unwrap()
+        );
+        assert_eq!(
+            tolerance("abs:0.5").unwrap(),
+            Tolerance::absolute(0.5).unwrap()
+        );
+        assert_eq!(
+            tolerance("deg:0.02").unwrap(),
+            Tolerance::degrees(0.02).unwrap()
+        );
         for wrong in ["", "0", "-1", "inf", "nan", "rel:1", "deg:91", "abs:"] {
             assert!(tolerance(wrong).is_err(), "{wrong}");
         }
-        let shown = Tolerance::Angle(0.02).to_string();
-        assert_eq!(tolerance(&shown).unwrap(), Tolerance::Angle(0.02));
+        let shown = Tolerance::degrees(0.02).unwrap().to_string();
+        assert_eq!(
+            tolerance(&shown).unwrap(),
+            Tolerance::degrees(0.02).unwrap()
+        );
     }
 }

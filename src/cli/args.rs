@@ -5,7 +5,9 @@ use std::path::PathBuf;
 
 use anyhow::{Context, anyhow, ensure};
 use clap::Args;
-use photosurface::{Access, DVec3, MarkerRadius, Observer, Scene, Velocity, even_steps};
+use photosurface::{
+    Access, DVec3, MarkerRadius, Observer, Place, Scene, Time, Velocity, even_steps,
+};
 
 /// What to look at.
 #[derive(Debug, Args)]
@@ -88,10 +90,10 @@ impl ObserverArgs {
         let mut observer = *scene.observer();
         observer.velocity = self.velocity(&observer)?;
         if let Some(position) = self.observer {
-            observer.position = position;
+            observer.position = Place::new(position).context("--observer")?;
         }
         if let Some(time) = self.time {
-            observer.time = time;
+            observer.time = Time::new(time).context("--time")?;
         }
         if let Some(radius) = self.marker {
             observer.marker = match radius {

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use photosurface::{CostStudy, MeshCost, RayCost};
+use photosurface::{CostStudy, MeshCost, RayCost, Unit};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -45,9 +45,9 @@ pub(super) fn tables_of(study: &CostStudy, out: &mut dyn Write) -> anyhow::Resul
     if let Some(unit) = study.unit {
         table(MESH_HEADINGS, study.meshes.iter().map(mesh_cells), out)?;
         let unit = match unit {
-            "relative" => "relative to the diagonal of each photosurface",
-            "absolute" => "lengths",
-            _ => "degrees",
+            Unit::Relative => "relative to the diagonal of each photosurface",
+            Unit::Absolute => "lengths",
+            Unit::Degrees => "degrees",
         };
         writeln!(
             out,

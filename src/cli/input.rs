@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, bail, ensure};
 use photosurface::{
-    Access, BUILT_IN_SCENES, DVec3, Findings, Model, Object, Observer, ReadError, Scene, Source,
-    Textures, read_whole,
+    Access, BUILT_IN_SCENES, DVec3, Findings, Model, Object, Observer, Place, ReadError, Scene,
+    Source, Textures, read_whole,
 };
 
 use super::args::{InputArgs, ObserverArgs};
@@ -157,7 +157,7 @@ impl Reading<'_> {
         let mut scene = self.observer.apply(scene)?;
         if !self.observer.has_place() {
             let observer = *scene.observer();
-            let position = stand_off(&model, observer.velocity.direction());
+            let position = Place::new(stand_off(&model, observer.velocity.direction()))?;
             scene = scene.with_observer(Observer {
                 position,
                 ..observer

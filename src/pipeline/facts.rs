@@ -80,8 +80,8 @@ impl SceneFacts {
         Self {
             title: scene.title().map(str::to_owned),
             generator: concat!("photosurface ", env!("CARGO_PKG_VERSION")),
-            observer_time: observer.time,
-            observer_position: observer.position.to_array(),
+            observer_time: observer.time.get(),
+            observer_position: observer.position.get().to_array(),
             observer_direction: observer.velocity.direction().to_array(),
             observer_beta: observer.velocity.beta(),
             observer_gamma: observer.velocity.gamma(),

@@ -14,7 +14,7 @@ use super::stage::Placed;
 use crate::light_cone::{Extremes, View};
 use crate::material::Part;
 use crate::mesh::Mesh;
-use crate::scene::Tolerance;
+use crate::scene::{Tolerance, Unit};
 use crate::shape::Shape;
 use crate::spacetime::length;
 use crate::tessellate::{
@@ -318,8 +318,8 @@ impl<'a> Plan<'a> {
             curvature: limits.curvature,
             rounding: self.rounding(mesh, &seen.extremes, around, 0.0),
         };
-        match self.tolerance {
-            Tolerance::Angle(degrees) => {
+        match (self.tolerance.unit(), self.tolerance.number()) {
+            (Unit::Degrees, degrees) => {
                 Certificate::of_angles(degrees, &self.view, mesh, bounds, counts)
             }
             _ => Certificate::of_lengths(self.length, bounds, counts),
@@ -426,18 +426,17 @@ impl<'a> Plan<'a> {
             let mut facets = mesh.triangles().iter().map(corners_of);
             facets.any(|offsets| self.nearest(offsets) == DVec3::ZERO)
         };
-        let least = match self.aimed {
-            Tolerance::Angle(degrees) => {
+        let least = match (self.aimed.unit(), self.aimed.number()) {
+            (Unit::Degrees, degrees) => {
                 let share = if touched() { NEAREST } else { NEAREST_OF_ALL };
-                let diagonal = length_of(Tolerance::Relative(1.0), &self.seen);
-                share * diagonal * degrees.to_radians().sin()
+                share * diagonal(&self.seen) * degrees.to_radians().sin()
             }
             _ => 0.0,
         };
         let allowed = |corners: &[u32; 3]| {
             let positions = corners.map(|corner| mesh.positions()[corner as usize]);
-            let here = match self.aimed {
-                Tolerance::Angle(degrees) => {
+            let here = match (self.aimed.unit(), self.aimed.number()) {
+                (Unit::Degrees, degrees) => {
                     let nearest = self.view.seen_distance(self.nearest(corners_of(corners)));
                     // The facets that this leads to are other ones: a little room for their distances.
                     (0.9 * degrees.to_radians().sin() * nearest).max(least)
@@ -468,8 +467,8 @@ impl<'a> Plan<'a> {
     ) -> Allowance {
         let velocity = self.view.relative_velocity();
         let (gamma, gamma_beta) = (velocity.gamma(), velocity.gamma_beta());
-        match tolerance {
-            Tolerance::Angle(degrees) => {
+        match (tolerance.unit(), tolerance.number()) {
+            (Unit::Degrees, degrees) => {
                 // (gamma beta e + rounding) / (distance - gamma e - rounding) <= s, solved for e. What curvature takes
                 // goes with the distance.
                 let s = degrees.to_radians().sin();
@@ -479,12 +478,11 @@ impl<'a> Plan<'a> {
                     1.0
                 };
                 let share = ROOM / (gamma_beta + gamma * s);
-                let diagonal = length_of(Tolerance::Relative(1.0), seen);
                 Allowance::Angle {
                     view: self.view,
                     share: s * left * share,
                     less: (1.0 + s) * rounding * share,
-                    least: LEAST_OF_ANGLE * diagonal * s * share,
+                    least: LEAST_OF_ANGLE * diagonal(seen) * s * share,
                 }
             }
             _ => {
@@ -497,16 +495,20 @@ impl<'a> Plan<'a> {
 
 /// A tolerance as a length; an angle at the nearest vertex.
 fn length_of(tolerance: Tolerance, seen: &[Seen]) -> f64 {
-    let diagonal = || bounds(seen).map_or(0.0, |(low, high)| length(high - low));
-    match tolerance {
-        Tolerance::Absolute(length) => length,
-        Tolerance::Relative(fraction) => fraction * diagonal(),
-        Tolerance::Angle(degrees) => {
+    match (tolerance.unit(), tolerance.number()) {
+        (Unit::Absolute, length) => length,
+        (Unit::Relative, fraction) => fraction * diagonal(seen),
+        (Unit::Degrees, degrees) => {
             let distances = seen.iter().map(|seen| seen.extremes.nearest);
             let nearest = distances.fold(f64::INFINITY, f64::min);
-            degrees.to_radians().sin() * nearest.max(NEAREST * diagonal())
+            degrees.to_radians().sin() * nearest.max(NEAREST * diagonal(seen))
         }
     }
+}
+
+/// Of the box around what is seen.
+fn diagonal(seen: &[Seen]) -> f64 {
+    bounds(seen).map_or(0.0, |(low, high)| length(high - low))
 }
 
 fn seen_parts(view: &View, parts: &[(String, Part)]) -> Vec<Seen> {

@@ -325,8 +325,8 @@ impl Shaped {
                 shape: shape.clone(),
                 appearance: *appearance,
                 model_to_rest: object.model_to_rest(),
-                largest_scale: object.scale.max_element(),
-                deviation: shape.deviation() * object.scale.max_element(),
+                largest_scale: object.scale.largest(),
+                deviation: shape.deviation() * object.scale.largest(),
             }),
             _ => None,
         }

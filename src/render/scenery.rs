@@ -284,7 +284,7 @@ fn fine_mesh(object: &Object, shape: &Shape, appearance: &Appearance, part: &Par
         .mesh()
         .bounds()
         .map_or(0.0, |(low, high)| low.distance(high));
-    let fine = shape.within(FACETS * size / object.scale.max_element());
+    let fine = shape.within(FACETS * size / object.scale.largest());
     let made = fine.model(appearance).ok();
     let made = made.and_then(|mut model| model.parts.pop());
     let made = made.map(|part| part.transformed(&object.model_to_rest()));

@@ -7,14 +7,14 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::path::PathBuf;
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Error, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::{ObjectFields, Observer, SceneFields, even_steps};
-use crate::shape::{Cone, Cuboid, Cylinder, Grid, Lattice, Length, Rod, Shape, Sphere, Torus};
+use crate::shape::{Cone, Cuboid, Cylinder, Grid, Lattice, Rod, Shape, Sphere, Torus};
 use crate::spacetime::{Velocity, VelocityError};
 
 /// A type that a scene writes as an object with keys.
@@ -210,72 +210,6 @@ pub(super) fn velocity<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vel
         }
     }
     deserializer.deserialize_any(Form)
-}
-
-/// A rotation `[x, y, z, w]`; lengths that differ from 1 by more than rounding are mistakes.
-pub(super) fn rotation<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DQuat, D::Error> {
-    let components = <[f64; 4]>::deserialize(deserializer)?;
-    let quaternion = DQuat::from_array(components);
-    if (quaternion.length() - 1.0).abs() > 1e-3 {
-        return Err(D::Error::custom(format_args!(
-            "the rotation {components:?} has length {}, expected a unit quaternion [x, y, z, w]",
-            quaternion.length()
-        )));
-    }
-    Ok(quaternion.normalize())
-}
-
-/// Stretches along the three axes: one factor for all, or one for each.
-#[derive(JsonSchema)]
-#[schemars(with = "ScaleForm")]
-pub(super) struct Scale(pub(super) DVec3);
-
-#[derive(JsonSchema)]
-#[serde(untagged)]
-#[allow(dead_code)] // Read by the schema only.
-enum ScaleForm {
-    /// One factor for all axes.
-    Uniform(Length),
-    /// A factor for each axis.
-    PerAxis([Length; 3]),
-}
-
-impl Default for Scale {
-    fn default() -> Self {
-        Self(DVec3::ONE)
-    }
-}
-
-impl<'de> Deserialize<'de> for Scale {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Form;
-        impl<'de> Visitor<'de> for Form {
-            type Value = Scale;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a factor > 0 or three, one for each axis")
-            }
-
-            fn visit_f64<E: Error>(self, factor: f64) -> Result<Scale, E> {
-                let factor = Length::new(factor).map_err(E::custom)?;
-                Ok(Scale(DVec3::splat(factor.get())))
-            }
-
-            fn visit_i64<E: Error>(self, factor: i64) -> Result<Scale, E> {
-                self.visit_f64(factor as f64)
-            }
-
-            fn visit_u64<E: Error>(self, factor: u64) -> Result<Scale, E> {
-                self.visit_f64(factor as f64)
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Scale, A::Error> {
-                let factors = <[Length; 3]>::deserialize(SeqAccessDeserializer::new(seq))?;
-                Ok(Scale(factors.map(Length::get).into()))
-            }
-        }
-        deserializer.deserialize_any(Form)
-    }
 }
 
 /// Proper times: a list, or evenly spaced ones.

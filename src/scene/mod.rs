@@ -7,19 +7,25 @@ mod built_in;
 mod forms;
 mod json;
 mod marker;
+mod place;
+mod rotation;
+mod scale;
 mod tolerance;
 
 pub use attributes::{Attribute, Attributes, UnknownAttribute};
 pub use built_in::{BUILT_IN_SCENES, BuiltInScene};
 pub use json::SceneError;
 pub use marker::{MarkerRadius, MarkerRadiusError};
-pub use tolerance::{Tolerance, ToleranceError};
+pub use place::{Place, PlaceError, Time, TimeError};
+pub use rotation::{Rotation, RotationError};
+pub use scale::Scale;
+pub use tolerance::{Tolerance, ToleranceError, Unit};
 
 use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DVec3};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use thiserror::Error;
@@ -27,7 +33,7 @@ use thiserror::Error;
 use crate::material::Model;
 use crate::shape::{Appearance, Color, Shape};
 use crate::spacetime::{Event, Velocity, WorldLine};
-use forms::{FromObject, Scale, Steps, VelocityForm};
+use forms::{FromObject, Steps, VelocityForm};
 
 /// Most evenly spaced steps one scene may have: a guard against slips of the pen.
 const MAX_STEPS: usize = 100_000;
@@ -52,10 +58,11 @@ pub struct Scene {
 #[serde(deny_unknown_fields, default)]
 pub struct Observer {
     /// Scene time of the observation.
-    pub time: f64,
+    #[schemars(with = "f64")]
+    pub time: Time,
     /// Place of the observation in the scene frame.
     #[schemars(with = "[f64; 3]")]
-    pub position: DVec3,
+    pub position: Place,
     /// The observer's velocity in the scene frame.
     #[serde(deserialize_with = "forms::velocity")]
     #[schemars(with = "VelocityForm")]
@@ -77,11 +84,11 @@ pub struct Object {
     /// Where its geometry comes from.
     pub source: Source,
     /// Where its origin is at scene time 0, in the scene frame.
-    pub position: DVec3,
-    /// Turns its geometry, after `scale`, in the rest frame; a unit quaternion.
-    pub rotation: DQuat,
-    /// Stretches its geometry along its own axes; positive.
-    pub scale: DVec3,
+    pub position: Place,
+    /// Turns its geometry, after `scale`, in the rest frame.
+    pub rotation: Rotation,
+    /// Stretches its geometry along its own axes.
+    pub scale: Scale,
     /// Its velocity in the scene frame.
     pub velocity: Velocity,
     /// How far its photosurface may be from the true one, if not as far as the scene says.
@@ -275,7 +282,7 @@ impl Observer {
     /// The observer's worldline; proper time 0 is the observation event.
     pub fn world_line(&self) -> WorldLine {
         WorldLine {
-            origin: Event::new(self.time, self.position),
+            origin: Event::new(self.time.get(), self.position.get()),
             velocity: self.velocity,
         }
     }
@@ -287,9 +294,9 @@ impl Object {
         Self {
             name: name.into(),
             source,
-            position: DVec3::ZERO,
-            rotation: DQuat::IDENTITY,
-            scale: DVec3::ONE,
+            position: Place::ORIGIN,
+            rotation: Rotation::IDENTITY,
+            scale: Scale::default(),
             velocity: Velocity::ZERO,
             tolerance: None,
         }
@@ -298,14 +305,15 @@ impl Object {
     /// The worldline of the object's origin.
     pub fn world_line(&self) -> WorldLine {
         WorldLine {
-            origin: Event::new(0.0, self.position),
+            origin: Event::new(0.0, self.position.get()),
             velocity: self.velocity,
         }
     }
 
     /// From the coordinates of the model to the rest frame, origin at the object's origin.
     pub fn model_to_rest(&self) -> DAffine3 {
-        DAffine3::from_scale_rotation_translation(self.scale, self.rotation, DVec3::ZERO)
+        let (scale, rotation) = (self.scale.get(), self.rotation.get());
+        DAffine3::from_scale_rotation_translation(scale, rotation, DVec3::ZERO)
     }
 }
 
@@ -375,11 +383,11 @@ struct ObjectFields {
     /// Where the object's origin is at scene time 0, in the scene frame; the scene's origin if absent.
     #[serde(default)]
     #[schemars(with = "[f64; 3]")]
-    position: DVec3,
+    position: Place,
     /// Turns the geometry, after `scale`, in the rest frame: a unit quaternion [x, y, z, w].
-    #[serde(default, deserialize_with = "forms::rotation")]
+    #[serde(default)]
     #[schemars(with = "[f64; 4]")]
-    rotation: DQuat,
+    rotation: Rotation,
     /// Stretches the geometry along its own axes: one factor or three, positive; 1 if absent.
     #[serde(default)]
     scale: Scale,
@@ -422,7 +430,7 @@ impl TryFrom<FromObject<ObjectFields>> for Object {
             source,
             position: fields.position,
             rotation: fields.rotation,
-            scale: fields.scale.0,
+            scale: fields.scale,
             velocity: fields.velocity,
             tolerance: fields.tolerance,
         })

@@ -7,7 +7,7 @@ use super::random::Random;
 use super::true_surface::TrueSurface;
 use crate::light_cone::View;
 use crate::pipeline::{Photosurface, Stage, Wanted};
-use crate::scene::Attributes;
+use crate::scene::{Attributes, Unit};
 
 /// Places that a thread takes at a time; each lot has random numbers of its own, so that the result does not depend
 /// on how many threads there are.
@@ -99,7 +99,7 @@ fn of_one(
     let rest = rest.expect("rest positions were asked for");
     let (seen, triangles) = (photosurface.mesh.positions(), photosurface.mesh.triangles());
     let certificate = &photosurface.facts.certificate;
-    let in_degrees = certificate.unit == "degrees";
+    let in_degrees = certificate.unit == Unit::Degrees;
     let place = |index: usize, random: &mut Random| {
         // Every triangle in turn, if there are enough places for that.
         let triangle = match places >= triangles.len() {

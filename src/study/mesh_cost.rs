@@ -12,7 +12,7 @@ use super::uniform::{UniformCost, uniform_cost};
 use super::{CostSettings, StudyError};
 use crate::material::Model;
 use crate::pipeline::{Facts, Photosurface, Stage, Wanted};
-use crate::scene::{Scene, Tolerance};
+use crate::scene::{Scene, Tolerance, Unit};
 use crate::tessellate::Precision;
 use crate::write::{Export, Format, write_glb};
 
@@ -106,7 +106,7 @@ pub(super) fn mesh_cost(
         subdivide: true,
         precision: Precision::Single,
     };
-    let (number, _) = super::number_and_unit(tolerance);
+    let number = tolerance.number();
     let predictions = stage.predictions(wanted);
     let predicted_triangles: f64 = predictions.iter().map(|p| p.triangles).sum();
     let mut cost = MeshCost {
@@ -157,8 +157,8 @@ pub(super) fn mesh_cost(
         certified: certificates().all(|c| c.complete),
         gap: number * largest(&mut certificates().map(|c| c.gap / c.tolerance)),
         bound: number * largest(&mut certificates().map(|c| c.total / c.tolerance)),
-        bound_length: match tolerance {
-            Tolerance::Angle(_) => None,
+        bound_length: match tolerance.unit() {
+            Unit::Degrees => None,
             _ => Some(largest(&mut certificates().map(|c| c.total))),
         },
         error: number * of_tolerance,

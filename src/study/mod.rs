@@ -25,7 +25,7 @@ pub use uniform::{UniformCost, UniformRun};
 
 use crate::material::Model;
 use crate::pipeline::{SceneFacts, Stage};
-use crate::scene::{Scene, Tolerance};
+use crate::scene::{Scene, Tolerance, Unit};
 use crate::write::WriteError;
 
 /// What a study looks at, and how closely.
@@ -48,9 +48,10 @@ pub struct CostSettings {
 impl Default for CostSettings {
     /// Meshes alone, from a tenth to a millionth of the diagonal.
     fn default() -> Self {
+        let fraction = |number| Tolerance::relative(number).expect("finite and positive");
         let tolerances = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
         Self {
-            tolerances: tolerances.map(Tolerance::Relative).to_vec(),
+            tolerances: tolerances.map(fraction).to_vec(),
             rays: None,
             repeats: NonZeroUsize::MIN.saturating_add(2),
             most_triangles: 3_000_000,
@@ -83,7 +84,7 @@ impl CostSettings {
 /// )?;
 /// let (models, _) = load_models(&scene, ".".as_ref())?;
 /// let settings = CostSettings {
-///     tolerances: vec![Tolerance::Relative(1e-2), Tolerance::Relative(1e-3)],
+///     tolerances: vec![Tolerance::relative(1e-2)?, Tolerance::relative(1e-3)?],
 ///     ..CostSettings::default()
 /// };
 /// let study = CostStudy::new(&scene, &models, &settings, || ())?;
@@ -97,9 +98,8 @@ impl CostSettings {
 pub struct CostStudy {
     /// The scene.
     pub scene: SceneFacts,
-    /// Of tolerances: `relative`, to the diagonal of each photosurface, `absolute`, a length, or `angle_deg`; `None`
-    /// without meshes.
-    pub unit: Option<&'static str>,
+    /// Of tolerances; `None` without meshes.
+    pub unit: Option<Unit>,
     /// How many threads there were.
     pub threads: usize,
     /// How often each tolerance and each number of rays was carried out.
@@ -164,7 +164,7 @@ impl CostStudy {
         if tolerances.is_empty() && samples.is_empty() {
             return Err(StudyError::Nothing);
         }
-        let unit = tolerances.first().map(|&first| number_and_unit(first).1);
+        let unit = tolerances.first().map(|first| first.unit());
         // From loose to tight, so that what an allocator keeps of one says little of the next one's memory.
         let mut meshes = Vec::with_capacity(tolerances.len());
         for tolerance in tolerances {
@@ -198,21 +198,12 @@ impl CostStudy {
     }
 }
 
-/// As a scene file has it.
-fn number_and_unit(tolerance: Tolerance) -> (f64, &'static str) {
-    match tolerance {
-        Tolerance::Relative(fraction) => (fraction, "relative"),
-        Tolerance::Absolute(length) => (length, "absolute"),
-        Tolerance::Angle(degrees) => (degrees, "angle_deg"),
-    }
-}
-
 /// The loosest first.
 fn in_order(tolerances: &[Tolerance]) -> Result<Vec<Tolerance>, StudyError> {
     let mut sorted = tolerances.to_vec();
-    sorted.sort_by(|&a, &b| number_and_unit(b).0.total_cmp(&number_and_unit(a).0));
+    sorted.sort_by(|a, b| b.number().total_cmp(&a.number()));
     for pair in sorted.windows(2) {
-        if number_and_unit(pair[0]).1 != number_and_unit(pair[1]).1 {
+        if pair[0].unit() != pair[1].unit() {
             return Err(StudyError::MixedUnits(pair[0], pair[1]));
         }
         if pair[0] == pair[1] {
@@ -243,7 +234,9 @@ mod tests {
         let scene = Scene::from_json(scene).unwrap();
         let (models, _) = crate::jobs::load_models(&scene, ".".as_ref()).unwrap();
         let settings = CostSettings {
-            tolerances: vec![Tolerance::Relative(1e-1), Tolerance::Relative(1e-9)],
+            tolerances: [1e-1, 1e-9]
+                .map(|number| Tolerance::relative(number).unwrap())
+                .to_vec(),
             most_triangles: 1000,
             samples: NonZeroUsize::MIN,
             ..CostSettings::default()
@@ -256,11 +249,12 @@ mod tests {
 
     #[test]
     fn tolerances_are_put_in_order_or_refused() {
-        use Tolerance::{Absolute, Relative};
-        let sorted = in_order(&[Relative(1e-3), Relative(1e-1), Relative(1e-2)]).unwrap();
-        assert_eq!(sorted, [1e-1, 1e-2, 1e-3].map(Relative));
+        let relative = |number| Tolerance::relative(number).unwrap();
+        let absolute = |number| Tolerance::absolute(number).unwrap();
+        let sorted = in_order(&[1e-3, 1e-1, 1e-2].map(relative)).unwrap();
+        assert_eq!(sorted, [1e-1, 1e-2, 1e-3].map(relative));
         let error = |tolerances: &[Tolerance]| in_order(tolerances).unwrap_err().to_string();
-        assert!(error(&[Absolute(1.0), Relative(0.5)]).contains("abs:1.000e0 and 5.000e-1"));
-        assert!(error(&[Absolute(1.0), Absolute(1.0)]).contains("abs:1.000e0 is there twice"));
+        assert!(error(&[absolute(1.0), relative(0.5)]).contains("abs:1.000e0 and 5.000e-1"));
+        assert!(error(&[absolute(1.0), absolute(1.0)]).contains("abs:1.000e0 is there twice"));
     }
 }

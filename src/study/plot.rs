@@ -17,6 +17,7 @@ use thiserror::Error;
 
 use crate::plot::{Curve, FAMILY, GREY, Panel};
 use crate::render::FONT;
+use crate::scene::Unit;
 use crate::study::{CostStudy, Made, MeshCost, RayCost};
 
 /// The bitmap backend knows no half-covered pixels: pictures are drawn so many times larger and made smaller.
@@ -170,9 +171,9 @@ impl CostStudy {
         let times = made(|made| made.seconds.photosurface);
         let (&tightest, &slowest) = (theory.last()?, times.last()?);
         let tolerance = match self.unit? {
-            "relative" => "tolerance, of the diagonal",
-            "absolute" => "tolerance, a length",
-            _ => "tolerance, degrees",
+            Unit::Relative => "tolerance, of the diagonal",
+            Unit::Absolute => "tolerance, a length",
+            Unit::Degrees => "tolerance, degrees",
         };
         let panel = |y_text, through, curves| Panel {
             x_text: tolerance,

@@ -101,6 +101,7 @@ impl Outline {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Rotation, Scale};
     use crate::shape::{Appearance, Shape};
 
     fn object(shape: Shape) -> Object {
@@ -132,8 +133,9 @@ mod tests {
     #[test]
     fn scale_and_rotation_of_the_object_count() {
         let mut object = object(Shape::sphere(1.0).unwrap());
-        object.scale = DVec3::new(3.0, 1.0, 1.0);
-        object.rotation = glam::DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
+        object.scale = Scale::new(DVec3::new(3.0, 1.0, 1.0)).unwrap();
+        let quarter = glam::DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
+        object.rotation = Rotation::new(quarter).unwrap();
         let nearest = TrueSurface::of(&object)
             .unwrap()
             .nearest(DVec3::new(0.0, 2.5, 0.0));

@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::triangle_gap;
 use crate::light_cone::{Extremes, View};
 use crate::mesh::Mesh;
+use crate::scene::Unit;
 
 /// Room for the few roundings of a product of bounds.
 const UP: f64 = 1.0 + 8.0 * f64::EPSILON;
@@ -17,8 +18,9 @@ const UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 /// `rounding` and `total` are angles seen by the observer, in degrees.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Certificate {
-    /// `length` or `degrees`.
-    pub unit: &'static str,
+    /// Of all these numbers: a length, or degrees.
+    #[serde(serialize_with = "name")]
+    pub unit: Unit,
     /// What was asked for.
     pub tolerance: f64,
     /// Proven: between the mapped flat triangles and the photosurface of the triangles at rest.
@@ -122,7 +124,7 @@ impl Certificate {
     pub(crate) fn of_lengths(tolerance: f64, bounds: Bounds, counts: Counts) -> Self {
         let total = bounds.gap + bounds.curvature + bounds.rounding;
         Self::new(
-            "length",
+            Unit::Absolute,
             tolerance,
             [bounds.gap, bounds.curvature, bounds.rounding, total],
             counts,
@@ -178,7 +180,7 @@ impl Certificate {
                 180.0
             }
         };
-        let certificate = Self::new("degrees", degrees, sines.map(angle), counts);
+        let certificate = Self::new(Unit::Degrees, degrees, sines.map(angle), counts);
         Self {
             // Nothing is seen farther off than on the other side of the sky.
             total: certificate.total.min(180.0),
@@ -186,7 +188,7 @@ impl Certificate {
         }
     }
 
-    fn new(unit: &'static str, tolerance: f64, bounds: [f64; 4], counts: Counts) -> Self {
+    fn new(unit: Unit, tolerance: f64, bounds: [f64; 4], counts: Counts) -> Self {
         let [gap, curvature, rounding, total] = bounds;
         let total = total * UP;
         // Some triangle there has to be, whatever overflowed on the way to their number.
@@ -208,6 +210,10 @@ impl Certificate {
             ratio: finite(counts.triangles_out as f64 / minimum_triangles),
         }
     }
+}
+
+fn name<S: Serializer>(unit: &Unit, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(unit)
 }
 
 /// A number that a file can say: JSON has no infinity, and instead of one `null` would be read. What is beyond `f64`, or

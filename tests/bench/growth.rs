@@ -13,8 +13,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use photosurface::{
-    Camera, DVec3, Mesh, Model, Object, Observer, Part, PictureOptions, PictureSize, Projection,
-    Scene, Scenery, Source, Stage, Velocity, Viewpoint, Wanted, read_gltf_bytes, read_model,
+    Camera, DVec3, Mesh, Model, Object, Observer, Part, PictureOptions, PictureSize, Place,
+    Projection, Scene, Scenery, Source, Stage, Velocity, Viewpoint, Wanted, read_gltf_bytes,
+    read_model,
 };
 use serde_json::{Value, json};
 
@@ -155,7 +156,7 @@ fn objects(count: u32) -> Duration {
     let cube = model(std::iter::once(cube(1.0, DVec3::ZERO)));
     let objects = (0..count).map(|k| {
         let (mut object, cube) = object(&format!("cube{k}"), cube.clone());
-        object.position = place(k, count);
+        object.position = Place::new(place(k, count)).expect("finite");
         let speed = f64::from(k % 97) / 100.0;
         object.velocity = Velocity::from_beta(speed, DVec3::X).expect("slower than light");
         (object, cube)
@@ -180,7 +181,7 @@ fn scene(count: u32) -> Duration {
     timed(|| {
         let objects = (0..count).map(|k| {
             let (mut object, cube) = object(&format!("cube{k}"), cube.clone());
-            object.position = place(k, count);
+            object.position = Place::new(place(k, count)).expect("finite");
             (object, cube)
         });
         let stage = stage(objects.collect());

@@ -14,8 +14,8 @@ use common::Random;
 use common::refining::model;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use photosurface::{
-    BuiltInScene, Camera, DVec3, Mesh, Object, Observer, PictureOptions, PictureSize, Projection,
-    Scene, Scenery, Source, Stage, Velocity, Viewpoint, load_models,
+    BuiltInScene, Camera, DVec3, Mesh, Object, Observer, PictureOptions, PictureSize, Place,
+    Projection, Scene, Scenery, Source, Stage, Velocity, Viewpoint, load_models,
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use settings::settings;
@@ -115,7 +115,7 @@ fn meshes(criterion: &mut Criterion) {
         for cloud in [Cloud::Even, Cloud::Clustered] {
             let observer = Observer {
                 velocity: Velocity::from_beta(0.6, DVec3::NEG_Z).expect("slower than light"),
-                position: DVec3::new(0.0, 0.0, 3.0),
+                position: Place::new(DVec3::new(0.0, 0.0, 3.0)).expect("finite"),
                 ..Observer::default()
             };
             let source = Source::Model(Arc::new(model(&[cloud.mesh(count)])));

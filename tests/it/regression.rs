@@ -409,7 +409,11 @@ fn a_budget_that_nothing_fits_is_given_up_soon() {
 fn what_is_beyond_the_corners_is_rounded_too() {
     let velocity = Velocity::from_beta(0.1, DVec3::X).unwrap();
     for tolerance in [1.2e-7, 2e-7, 4e-7] {
-        let mut sighting = Sighting::new(DVec3::ZERO, velocity, Tolerance::Absolute(tolerance));
+        let mut sighting = Sighting::new(
+            DVec3::ZERO,
+            velocity,
+            Tolerance::absolute(tolerance).unwrap(),
+        );
         sighting.wanted.precision = Precision::Single;
         let made = sighting.of_one(&plate(0.001)).certificate;
         assert!(made.rounding > 0.2 * tolerance && made.complete, "{made:?}");

@@ -7,7 +7,7 @@ use super::{FACETS_MADE_TO_PREDICT, LEAST_FOR_GAP, Plan, shrunk};
 use crate::material::Part;
 use crate::pipeline::Wanted;
 use crate::pipeline::seen::Seen;
-use crate::scene::Tolerance;
+use crate::scene::Unit;
 use crate::shape::Shape;
 use crate::tessellate::{local_stretch, predicted_pieces};
 
@@ -65,8 +65,8 @@ impl Plan<'_> {
         let pieces = facets
             .par_iter()
             .map(|(weight, offsets)| weight * predicted_pieces(*offsets, &draft.limits.allowance));
-        let reachable = match self.aimed {
-            Tolerance::Angle(degrees) => {
+        let reachable = match (self.aimed.unit(), self.aimed.number()) {
+            (Unit::Degrees, degrees) => {
                 let least = (1.0 - LEAST_FOR_GAP) * degrees.to_radians().sin();
                 facets.par_iter().all(|(_, offsets)| {
                     let nearest = self.nearest(*offsets);

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use photosurface::{
-    Appearance, DVec3, Mesh, Model, Object, Observer, Part, PhotosurfaceMap, Precision, Scene,
-    Shape, Source, Stage, Tolerance, Velocity, Wanted, load_models,
+    Appearance, DVec3, Mesh, Model, Object, Observer, Part, PhotosurfaceMap, Place, Precision,
+    Scene, Shape, Source, Stage, Tolerance, Velocity, Wanted, load_models,
 };
 
 use super::Random;
@@ -46,7 +46,7 @@ impl Sighting {
 
     pub(crate) fn stage(&self, source: Source) -> Stage {
         let observer = Observer {
-            position: self.observer,
+            position: Place::new(self.observer).expect("a finite place"),
             velocity: self.velocity,
             ..Observer::default()
         };

@@ -7,7 +7,7 @@ use crate::common::glb::{Glb, pack};
 use crate::common::refining::model;
 use crate::common::{Random, cases};
 use photosurface::{
-    DVec3, Event, Export, Lorentz, MAX_RAPIDITY, Mesh, Object, Observer, PhotosurfaceMap,
+    DVec3, Event, Export, Lorentz, MAX_RAPIDITY, Mesh, Object, Observer, PhotosurfaceMap, Place,
     Precision, Scene, Source, Stage, Velocity, VelocityError, View, Wanted, WorldLine, WriteError,
     load_models, write_glb,
 };
@@ -21,7 +21,7 @@ fn stage(mesh: &Mesh, place: DVec3, velocity: Velocity) -> Stage {
     };
     let source = Source::Model(Arc::new(model(std::slice::from_ref(mesh))));
     let object = Object {
-        position: place,
+        position: Place::new(place).expect("a finite place"),
         ..Object::new("thing", source)
     };
     let scene = Scene::new(observer, vec![object]).expect("one object with a name");

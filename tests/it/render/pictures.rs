@@ -190,7 +190,7 @@ fn rays_and_photosurfaces_show_the_same_to_within_the_tolerance() {
         let per_radian = per_radian_middle * (1.0 + half_height.powi(2) * (1.0 + aspect.powi(2)));
         let mut counts = Vec::new();
         for asked in [8.0, 4.0, 2.0, 1.0, 0.5, 0.25] {
-            let tolerance = Tolerance::Angle((asked / per_radian).to_degrees());
+            let tolerance = Tolerance::degrees((asked / per_radian).to_degrees()).unwrap();
             let stage = stage(&scene, tolerance);
             let rays = by_rays(&stage, &camera);
             let (meshes, angle) = by_meshes(&stage, &camera, Wanted::default());
@@ -379,7 +379,7 @@ fn rays_and_photosurfaces_are_shaded_alike() {
     let mut worst = Worst::new("shading, steps of 8 bits");
     for (name, scene, look, fov) in scenes() {
         let camera = pinhole(320, 240, fov, look);
-        let stage = stage(&scene, Tolerance::Relative(1e-5));
+        let stage = stage(&scene, Tolerance::relative(1e-5).unwrap());
         let rays = by_rays(&stage, &camera);
         let (meshes, _) = by_meshes(&stage, &camera, Wanted::default());
         for _ in 0..20_000 {

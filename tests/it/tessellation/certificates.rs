@@ -5,7 +5,7 @@ use crate::common::passing::angle_deg;
 use crate::common::refining::{
     Sighted, Sighting, Welded, distance_to_mesh, frozen, mesh, mix, model, plate, random_weights,
 };
-use photosurface::{Appearance, DVec3, Mesh, Shape, Source, Tolerance, Velocity};
+use photosurface::{Appearance, DVec3, Mesh, Shape, Source, Tolerance, Unit, Velocity};
 
 fn moving(beta: f64) -> Velocity {
     Velocity::from_beta(beta, DVec3::new(0.3, -0.2, -1.0)).unwrap()
@@ -100,7 +100,7 @@ fn watertight_in_watertight_out() {
         let mut divided = 0;
         for observer in observers {
             for tolerance in [3e-3, 3e-4] {
-                let tolerance = Tolerance::Relative(tolerance);
+                let tolerance = Tolerance::relative(tolerance).unwrap();
                 let sighting = Sighting::new(observer, moving(0.9), tolerance);
                 let after = assert_conforming(&sighting, std::slice::from_ref(&mesh), name);
                 assert!(
@@ -124,9 +124,9 @@ fn parts_that_share_an_edge_stay_together() {
         .collect();
     for observer in [DVec3::new(0.1, 0.4, 0.0), DVec3::new(0.3, 0.01, 3.0)] {
         for tolerance in [
-            Tolerance::Relative(1e-3),
-            Tolerance::Absolute(1e-3),
-            Tolerance::Angle(0.1),
+            Tolerance::relative(1e-3).unwrap(),
+            Tolerance::absolute(1e-3).unwrap(),
+            Tolerance::degrees(0.1).unwrap(),
         ] {
             let sighting = Sighting::new(observer, moving(0.8), tolerance);
             let after = assert_conforming(&sighting, &faces, "faces");
@@ -147,7 +147,7 @@ fn zeros_of_either_sign_are_one_place() {
         &[[1, 0, 2]],
     );
     let observer = DVec3::new(0.2, 0.31, 0.43);
-    let sighting = Sighting::new(observer, moving(0.9), Tolerance::Absolute(1e-5));
+    let sighting = Sighting::new(observer, moving(0.9), Tolerance::absolute(1e-5).unwrap());
     assert_conforming(&sighting, &[front, back], "zeros");
 }
 
@@ -168,7 +168,7 @@ fn neighbours_agree_in_any_order_and_orientation() {
         [2, 1, 0],
         [1, 0, 2],
     ];
-    let tolerance = Tolerance::Absolute(1e-4);
+    let tolerance = Tolerance::absolute(1e-4).unwrap();
     let sighting = Sighting::new(DVec3::new(0.1, 0.05, -0.6), moving(0.7), tolerance);
     // What is on the first edge of the first triangle: on no other place is the third weight zero.
     let edge_points = |sighted: &Sighted| {
@@ -214,7 +214,7 @@ fn error_within_bound_within_tolerance() {
             ("plate", plate(4.0)),
         ] {
             for exponent in 1..=6 {
-                let tolerance = Tolerance::Relative(10f64.powi(-exponent));
+                let tolerance = Tolerance::relative(10f64.powi(-exponent)).unwrap();
                 let sighting = Sighting::new(DVec3::new(0.0, 0.05, 0.1), velocity, tolerance);
                 let predicted = sighting
                     .stage(Source::Model(model(std::slice::from_ref(&mesh)).into()))
@@ -252,7 +252,7 @@ fn every_place_of_the_surface_is_near_the_mesh() {
         let sighting = Sighting::new(
             DVec3::new(0.1, 0.3, 0.05),
             moving(0.9),
-            Tolerance::Relative(3e-4),
+            Tolerance::relative(3e-4).unwrap(),
         );
         let sighted = sighting.of_one(&before);
         let total = sighted.certificate.total;
@@ -296,9 +296,9 @@ fn an_observer_may_be_anywhere() {
     ];
     for (place, observer) in places {
         for tolerance in [
-            Tolerance::Absolute(1e-3),
-            Tolerance::Relative(1e-4),
-            Tolerance::Angle(0.5),
+            Tolerance::absolute(1e-3).unwrap(),
+            Tolerance::relative(1e-4).unwrap(),
+            Tolerance::degrees(0.5).unwrap(),
         ] {
             for (name, before) in [("triangle", &alone), ("cube", &cube)] {
                 let sighting = Sighting::new(observer, moving(0.8), tolerance);
@@ -307,7 +307,7 @@ fn an_observer_may_be_anywhere() {
                 let case = format!("{place}, {name}: {sighting:?} {certificate:?}");
                 // Where the observer touches a surface, any gap is seen under the same angle.
                 let touches = distance_to_mesh(observer, before) < 1e-6;
-                let hopeless = touches && certificate.unit == "degrees";
+                let hopeless = touches && certificate.unit == Unit::Degrees;
                 assert!(certificate.complete || hopeless, "{case}");
                 assert!(after[0].triangle_count() < 100_000, "{case}");
             }
@@ -415,11 +415,11 @@ fn degenerate_triangles_do_no_harm() {
     for (name, before) in &cases {
         for observer in observers {
             for tolerance in [
-                Tolerance::Relative(1e-4),
-                Tolerance::Absolute(1e-4),
-                Tolerance::Angle(1.0),
+                Tolerance::relative(1e-4).unwrap(),
+                Tolerance::absolute(1e-4).unwrap(),
+                Tolerance::degrees(1.0).unwrap(),
             ] {
-                if *name == "huge" && tolerance == Tolerance::Absolute(1e-4) {
+                if *name == "huge" && tolerance == Tolerance::absolute(1e-4).unwrap() {
                     // 1e104 triangles; budgets are asked for them elsewhere.
                     continue;
                 }
@@ -429,7 +429,7 @@ fn degenerate_triangles_do_no_harm() {
                 let case = format!("{name}: {sighting:?} {certificate:?}");
                 assert!(!certificate.total.is_nan(), "{case}");
                 assert!(after[0].triangle_count() < 200_000, "{case}");
-                if matches!(tolerance, Tolerance::Absolute(_)) {
+                if tolerance.unit() == Unit::Absolute {
                     assert!(certificate.complete, "{case}");
                 }
             }
@@ -442,7 +442,7 @@ fn any_number_of_threads_gives_the_same_bits() {
     let source = |mesh: Mesh| Source::Model(model(&[mesh]).into());
     let sphere = Source::Shape(Shape::sphere(1.0).unwrap(), Appearance::default());
     for source in [sphere, source(lump()), source(torn_pyramid())] {
-        let tolerance = Tolerance::Relative(1e-4);
+        let tolerance = Tolerance::relative(1e-4).unwrap();
         let sighting = Sighting::new(DVec3::new(0.3, 0.4, 1.1), moving(0.9), tolerance);
         let [one, two, seven] = [1, 2, 7].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
@@ -470,9 +470,9 @@ fn without_subdivision_the_bound_is_still_true() {
     let mut random = Random::new(5);
     for (name, before) in shapes() {
         for tolerance in [
-            Tolerance::Relative(1e-3),
-            Tolerance::Relative(0.9),
-            Tolerance::Angle(1.0),
+            Tolerance::relative(1e-3).unwrap(),
+            Tolerance::relative(0.9).unwrap(),
+            Tolerance::degrees(1.0).unwrap(),
         ] {
             let mut sighting = Sighting::new(DVec3::new(0.1, 0.2, 2.0), moving(0.95), tolerance);
             sighting.wanted.subdivide = false;
@@ -486,7 +486,7 @@ fn without_subdivision_the_bound_is_still_true() {
             let certificate = &sighted.certificate;
             let fits = certificate.total <= certificate.tolerance;
             assert_eq!(certificate.complete, fits, "{name}");
-            if certificate.unit == "length" {
+            if certificate.unit == Unit::Absolute {
                 let largest = sighting.assert_contained(&sighted, 20, &mut random);
                 assert!(
                     largest > 0.5 * certificate.gap,
@@ -499,7 +499,7 @@ fn without_subdivision_the_bound_is_still_true() {
 
 #[test]
 fn a_looser_aim_makes_fewer_triangles_and_says_so() {
-    let sighting = Sighting::new(DVec3::ZERO, moving(0.9), Tolerance::Absolute(1e-4));
+    let sighting = Sighting::new(DVec3::ZERO, moving(0.9), Tolerance::absolute(1e-4).unwrap());
     let tight = sighting.of_one(&plate(0.2));
     let budget = tight.triangle_count() as u64 / 10;
     let source = Source::Model(model(&[plate(0.2)]).into());
@@ -527,7 +527,8 @@ fn angles_are_certified_as_angles() {
     for (name, before) in [("plate", plate(0.3)), ("pyramid", torn_pyramid())] {
         for degrees in [2.0, 0.3, 0.03] {
             let observer = DVec3::new(0.1, 0.2, 0.15);
-            let sighting = Sighting::new(observer, moving(0.9), Tolerance::Angle(degrees));
+            let sighting =
+                Sighting::new(observer, moving(0.9), Tolerance::degrees(degrees).unwrap());
             let sighted = sighting.of_one(&before);
             let certificate = &sighted.certificate;
             assert!(certificate.complete, "{name}: {certificate:?}");
@@ -557,7 +558,7 @@ fn plates_take_little_more_triangles_than_theory_asks_for() {
     let mut judged = 0;
     for h in [1.0, 0.1, 0.01, 0.001] {
         for e in [1e-3, 1e-4, 1e-5] {
-            let tolerance = Tolerance::Absolute(e * velocity.gamma_beta());
+            let tolerance = Tolerance::absolute(e * velocity.gamma_beta()).unwrap();
             let sighting = Sighting::new(DVec3::ZERO, velocity, tolerance);
             let certificate = sighting.of_one(&plate(h)).certificate;
             assert!(certificate.complete, "{h} {e}: {certificate:?}");

@@ -8,8 +8,8 @@ use std::sync::Arc;
 use crate::common::Random;
 use crate::common::refining::{Welded, mesh, model};
 use photosurface::{
-    Attributes, BUILT_IN_SCENES, DVec3, Mesh, Object, Observer, Photosurface, Precision, Scene,
-    Source, Stage, Tolerance, Velocity, Wanted, load_models,
+    Attributes, BUILT_IN_SCENES, DVec3, Mesh, Object, Observer, Photosurface, Place, Precision,
+    Scene, Source, Stage, Tolerance, Velocity, Wanted, load_models,
 };
 
 /// Rapidities where a chart of the sky holds a facet, where it begins to collapse, and the largest.
@@ -154,7 +154,7 @@ fn lone_triangles_are_covered_from_any_distance() {
                 for sense in [-1.0, 1.0] {
                     let place = direction * (sense * 10f64.powi(exponent)) + DVec3::Y * 0.3;
                     let observer = Observer {
-                        position: place,
+                        position: Place::new(place).unwrap(),
                         velocity,
                         ..Observer::default()
                     };
@@ -172,5 +172,5 @@ fn scene_of(mesh: &Mesh, observer: Observer) -> Scene {
     let object = Object::new("lone", Source::Model(Arc::new(model)));
     Scene::new(observer, vec![object])
         .unwrap()
-        .with_tolerance(Tolerance::Relative(1e-3))
+        .with_tolerance(Tolerance::relative(1e-3).unwrap())
 }

@@ -20,8 +20,14 @@ fn curved_shapes_are_certified_against_the_curve() {
     ];
     for shape in shapes.map(Result::unwrap) {
         for (observer, tolerance) in [
-            (DVec3::new(0.3, 0.2, 4.0), Tolerance::Relative(2e-3)),
-            (DVec3::new(0.1, 0.2, 0.3), Tolerance::Absolute(1e-2)),
+            (
+                DVec3::new(0.3, 0.2, 4.0),
+                Tolerance::relative(2e-3).unwrap(),
+            ),
+            (
+                DVec3::new(0.1, 0.2, 0.3),
+                Tolerance::absolute(1e-2).unwrap(),
+            ),
         ] {
             let mut sighting = Sighting::new(observer, moving(0.9), tolerance);
             sighting.wanted.precision = Precision::Single;

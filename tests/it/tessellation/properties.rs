@@ -36,7 +36,7 @@ proptest! {
         let triangles: Vec<_> = picks.iter().map(|t| t.map(|i| i % count)).collect();
         let before = mesh(&corners, &triangles);
         let velocity = Velocity::from_rapidity(rapidity, DVec3::new(0.3, -0.2, -1.0)).unwrap();
-        let tolerance = Tolerance::Relative(10f64.powf(-exponent));
+        let tolerance = Tolerance::relative(10f64.powf(-exponent)).unwrap();
         let sighting = Sighting::new(observer.into(), velocity, tolerance);
         let sighted = sighting.of_one(&before);
         let certificate = &sighted.certificate;
