@@ -44,7 +44,7 @@ pub use mesh::{
     ShapeError, Sphere, Texture, Torus, Wrap,
 };
 pub use photosurface::{
-    Facts, Photosurface, Prediction, SceneFacts, Stage, VertexData, Wanted, step_label,
+    Facts, Photosurface, Prediction, SceneFacts, Stage, StageError, VertexData, Wanted, step_label,
 };
 pub use render::{
     Camera, CameraError, MAX_PICTURE_SIDE, MissingTexture, Picture, PictureOptions, PictureSize,
