@@ -34,9 +34,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ..Model::default()
     };
     let object = Object::new("wall", Source::Model(model.clone().into()));
-    let stage = Stage::new(Scene::new(observer, vec![object])?, vec![model]);
+    let stage = Stage::new(Scene::new(observer, vec![object])?, vec![model])?;
 
-    let photosurfaces: Vec<_> = stage.photosurfaces(0, Wanted::default()).collect();
+    let photosurfaces: Vec<_> = stage.photosurfaces(0, Wanted::default())?.collect();
     let export = Export {
         scene: &stage.facts(),
         marker: None,

@@ -17,11 +17,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }"#,
     )?;
     let (models, _) = load_models(&scene, ".".as_ref())?;
-    let stage = Stage::new(scene, models);
+    let stage = Stage::new(scene, models)?;
 
     println!("proper time    seen from x =       to x =    length along the motion");
     for step in 0..stage.scene().steps().len() {
-        for sphere in stage.photosurfaces(step, Wanted::default()) {
+        for sphere in stage.photosurfaces(step, Wanted::default())? {
             let (low, high) = sphere.mesh.bounds().ok_or("a sphere has vertices")?;
             let time = sphere.facts.proper_time;
             println!(

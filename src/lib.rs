@@ -43,7 +43,7 @@ pub use material::{
 };
 pub use mesh::{Mesh, MeshError};
 pub use pipeline::{
-    Facts, Photosurface, Prediction, SceneFacts, Stage, VertexData, Wanted, step_label,
+    Facts, Photosurface, Prediction, SceneFacts, Stage, StageError, VertexData, Wanted, step_label,
 };
 pub use read::{
     Access, AccessorProblem, DocumentProblem, Findings, NodeProblem, Note, ObjProblem, ReadError,

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::mpsc::{Receiver, sync_channel};
 
-use photosurface::{Photosurface, Stage, Wanted, WriteError};
+use photosurface::{Photosurface, Stage, StageError, Wanted, WriteError};
 
 /// Triangles of steps that are made ahead, about, where that is more than one step: enough to keep cores busy, and a
 /// few megabytes, so that many steps take hardly more memory than two.
@@ -30,7 +30,7 @@ pub(super) fn in_order(
     let at_rest = parts.map(|(_, part)| part.mesh().triangles().len()).sum();
     // Until one step is made nobody knows what it comes to.
     let (mut most, mut ahead) = (at_rest, steps_ahead(at_rest).min(1));
-    let mut begun: VecDeque<Receiver<Vec<Photosurface>>> = VecDeque::new();
+    let mut begun: VecDeque<Receiver<Result<Vec<Photosurface>, StageError>>> = VecDeque::new();
     rayon::in_place_scope(|scope| {
         let mut next = steps.start;
         for step in steps.clone() {
@@ -40,7 +40,8 @@ pub(super) fn in_order(
                 let (made, receiver) = sync_channel(1);
                 scope.spawn(move |_| {
                     // Nobody takes it when writing has failed.
-                    let _ = made.send(stage.photosurfaces(next, wanted).collect());
+                    let photosurfaces = stage.photosurfaces(next, wanted);
+                    let _ = made.send(photosurfaces.map(Iterator::collect));
                 });
                 begun.push_back(receiver);
                 next += 1;
@@ -52,8 +53,12 @@ pub(super) fn in_order(
             };
             match begun_before {
                 // Without a sender it has panicked, and so will this scope.
-                Some(made) => made.into_iter().flatten().try_for_each(&mut put)?,
-                None => stage.photosurfaces(step, wanted).try_for_each(&mut put)?,
+                Some(made) => {
+                    for made in made {
+                        made?.into_iter().try_for_each(&mut put)?;
+                    }
+                }
+                None => stage.photosurfaces(step, wanted)?.try_for_each(&mut put)?,
             }
             most = most.max(triangles);
             ahead = steps_ahead(most);

@@ -327,6 +327,7 @@ pub(super) fn rough_places(stage: &Stage, step: usize) -> Vec<DVec3> {
     };
     stage
         .photosurfaces(step, wanted)
+        .expect("a step of the scene")
         .flat_map(|surface| surface.mesh.positions().to_vec())
         .collect()
 }

@@ -47,7 +47,7 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
     let verbosity = Verbosity::new(args.quiet, args.verbose);
     let input = Input::read(&args.input, &args.observer, verbosity)?;
     for (_, scene) in args.detail.levels(&args.accuracy, input.scene)? {
-        let stage = Stage::new(scene, input.models.clone());
+        let stage = Stage::new(scene, input.models.clone())?;
         for (name, part) in stage.objects().flat_map(|(_, parts)| parts) {
             verbosity.detail(format_args!(
                 "{name}: {}, {}",

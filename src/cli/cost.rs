@@ -165,7 +165,7 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
 
     let settings = args.settings(&input)?;
     if !settings.tolerances.is_empty() {
-        tell_of_rest(&input, verbosity);
+        tell_of_rest(&input, verbosity)?;
     }
     let progress = progress_bar(settings.pieces(), "runs", verbosity);
     let study = CostStudy::new(&input.scene, &input.models, &settings, || progress.inc(1));
@@ -261,7 +261,7 @@ impl PictureArgs {
 
     /// With the cameras that `render` has for the observer.
     fn settings(&self, input: &Input) -> anyhow::Result<RaySettings> {
-        let stage = Stage::new(input.scene.clone(), input.models.clone());
+        let stage = Stage::new(input.scene.clone(), input.models.clone())?;
         let size = match self.size {
             Some(size) => size,
             None => PictureSize::new(320, 180)?,
@@ -325,8 +325,8 @@ impl OutputArgs {
 }
 
 /// Without a speed there is little to study.
-fn tell_of_rest(input: &Input, verbosity: Verbosity) {
-    let stage = Stage::new(input.scene.clone(), input.models.clone());
+fn tell_of_rest(input: &Input, verbosity: Verbosity) -> anyhow::Result<()> {
+    let stage = Stage::new(input.scene.clone(), input.models.clone())?;
     let is_at_rest = |object| stage.relative_velocity(object).rapidity() == 0.0;
     if input.scene.objects().iter().all(is_at_rest) {
         verbosity.note(
@@ -334,6 +334,7 @@ fn tell_of_rest(input: &Input, verbosity: Verbosity) {
              --beta 0.9, to see what one costs",
         );
     }
+    Ok(())
 }
 
 /// What the numbers alone do not say.

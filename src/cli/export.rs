@@ -156,7 +156,7 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
             true => std::mem::take(&mut models),
             false => models.clone(),
         };
-        let stage = Stage::new(level.scene, models);
+        let stage = Stage::new(level.scene, models)?;
         let of_file = || level.files[0].display().to_string();
         format
             .least_size(&stage, if output.split { 1 } else { steps })
@@ -320,9 +320,11 @@ impl Work<'_> {
     fn ply(&mut self, steps: Range<usize>, out: &mut dyn Write) -> Result<(), WriteError> {
         let (stage, wanted) = (self.stage, self.wanted);
         let mut photosurfaces = vec![];
-        for photosurface in steps.flat_map(|step| stage.photosurfaces(step, wanted)) {
-            self.count(&photosurface.facts);
-            photosurfaces.push(photosurface);
+        for step in steps {
+            for photosurface in stage.photosurfaces(step, wanted)? {
+                self.count(&photosurface.facts);
+                photosurfaces.push(photosurface);
+            }
         }
         self.clock.stop("photosurface");
         let export = Export {

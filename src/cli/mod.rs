@@ -22,6 +22,7 @@ use std::process::ExitCode;
 use anyhow::Context;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Parser, Subcommand, ValueEnum};
+use photosurface::WriteError;
 
 /// How a command ended, if not with an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +67,7 @@ enum Command {
 }
 
 /// Exit status after Ctrl-C or a signal that ends the program, as shells have it.
-const INTERRUPTED: i32 = 130;
+const INTERRUPTED: u8 = 130;
 
 /// Exit status where nobody reads our stdout any more, as shells have it; there is nobody to tell why, either.
 const BROKEN_PIPE: u8 = 141;
@@ -82,7 +83,7 @@ pub(crate) fn run() -> ExitCode {
     // A handler that cannot be set leaves the system's own, which ends the program too.
     let _ = ctrlc::set_handler(|| {
         photosurface::abandon_writes();
-        std::process::exit(INTERRUPTED);
+        std::process::exit(INTERRUPTED.into());
     });
     let done = match cli.command {
         Command::Export(args) => export::run(&args),
@@ -107,6 +108,8 @@ fn ended(done: anyhow::Result<Status>) -> ExitCode {
         Ok(Status::Done) => ExitCode::SUCCESS,
         Ok(Status::NotCertified) => ExitCode::from(NOT_CERTIFIED),
         Err(error) if is_broken_pipe(&error) => ExitCode::from(BROKEN_PIPE),
+        // Whoever interrupted the program need not be told.
+        Err(error) if is_cancelled(&error) => ExitCode::from(INTERRUPTED),
         Err(error) => {
             messages::error(&error);
             ExitCode::from(ERROR)
@@ -139,6 +142,12 @@ fn is_broken_pipe(error: &anyhow::Error) -> bool {
         let io = cause.downcast_ref::<std::io::Error>();
         io.is_some_and(|io| io.kind() == std::io::ErrorKind::BrokenPipe)
     })
+}
+
+/// A signal has come, and its handler ends the program.
+fn is_cancelled(error: &anyhow::Error) -> bool {
+    let mut causes = error.chain();
+    causes.any(|cause| matches!(cause.downcast_ref(), Some(WriteError::Cancelled)))
 }
 
 #[cfg(test)]

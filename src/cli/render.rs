@@ -87,7 +87,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     );
     check_destinations(files.iter().cloned(), &input.files)?;
     let scene = args.accuracy.scene(input.scene);
-    let mut stage = Stage::new(scene, input.models);
+    let mut stage = Stage::new(scene, input.models)?;
     let wanted = args.accuracy.wanted(Precision::Double);
     if camera.shows_meshes(method) && wanted.subdivide {
         stage = args.accuracy.within_budget(stage, wanted, verbosity).0;

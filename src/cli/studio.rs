@@ -212,7 +212,8 @@ impl<'a> Studio<'a> {
         // On a sheet by meshes each is in two pictures.
         let is_new = step >= self.uncounted;
         self.uncounted = self.uncounted.max(step + 1);
-        for surface in stage.photosurfaces(step, self.wanted) {
+        let surfaces = stage.photosurfaces(step, self.wanted);
+        for surface in surfaces.expect("a step of the scene") {
             // Both are in the order of the scene, in which no two objects have one name.
             while objects
                 .next_if(|object| object.name != surface.facts.object)

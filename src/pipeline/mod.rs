@@ -1,6 +1,7 @@
 //! The pipeline: a scene and its models in, the photosurface of every part at every step out.
 
 mod budget;
+mod error;
 mod facts;
 mod morph;
 mod names;
@@ -9,6 +10,7 @@ mod seen;
 mod stage;
 
 pub use budget::Prediction;
+pub use error::StageError;
 pub use facts::{Facts, SceneFacts};
 pub use names::step_label;
 pub(crate) use plan::Unrefined;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 use serde_json::Value;
 
+use super::StageError;
 use super::budget::Granted;
 use super::facts::{Facts, SceneFacts};
 use super::names::{self, UniqueNames, step_label};
@@ -37,8 +38,8 @@ const COARSER: f64 = 1.1;
 ///          "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1 } }, "position": [0, 0, -5] } ] }"#,
 /// )?;
 /// let (models, _) = load_models(&scene, ".".as_ref())?;
-/// let stage = Stage::new(scene, models);
-/// let ball = stage.photosurfaces(0, Wanted::default()).next().expect("one object, one photosurface");
+/// let stage = Stage::new(scene, models)?;
+/// let ball = stage.photosurfaces(0, Wanted::default())?.next().expect("one object, one photosurface");
 /// // Its centre, 5 ahead, is seen exp(atanh(0.8)) = 3 times as far away.
 /// let (low, high) = ball.mesh.bounds().expect("a sphere has vertices");
 /// assert!(low.z < -15.0 && high.z > -15.0);
@@ -135,15 +136,25 @@ pub(super) struct Shaped {
 impl Stage {
     /// Places one model for each object of `scene`, in their order, in the objects' rest frames.
     ///
-    /// # Panics
+    /// # Errors
     ///
-    /// If there are not as many models as objects.
-    pub fn new(scene: Scene, models: Vec<Model>) -> Self {
-        assert_eq!(
-            scene.objects().len(),
-            models.len(),
-            "one model for each object"
-        );
+    /// Not as many models as objects, or a mesh with a vertex that is not finite.
+    pub fn new(scene: Scene, models: Vec<Model>) -> Result<Self, StageError> {
+        let objects = scene.objects();
+        if objects.len() != models.len() {
+            return Err(StageError::Models {
+                objects: objects.len(),
+                models: models.len(),
+            });
+        }
+        for (object, model) in objects.iter().zip(&models) {
+            if let Some(part) = model.parts.iter().find(|part| !part.mesh().is_finite()) {
+                return Err(StageError::NotFinite {
+                    object: object.name.clone(),
+                    part: part.name.clone(),
+                });
+            }
+        }
         let mut names = UniqueNames::default();
         let marker = scene
             .observer()
@@ -170,12 +181,12 @@ impl Stage {
                 granted: None,
             });
         }
-        Self {
+        Ok(Self {
             scene,
             marker,
             objects,
             origins,
-        }
+        })
     }
 
     /// The scene.
@@ -214,19 +225,28 @@ impl Stage {
 
     /// The photosurfaces of all parts at one step, in the order of the scene.
     ///
-    /// # Panics
+    /// # Errors
     ///
-    /// If the scene has no such step.
-    pub fn photosurfaces(&self, step: usize, wanted: Wanted) -> impl Iterator<Item = Photosurface> {
+    /// The scene has no such step.
+    pub fn photosurfaces(
+        &self,
+        step: usize,
+        wanted: Wanted,
+    ) -> Result<impl Iterator<Item = Photosurface>, StageError> {
+        let steps = self.scene.steps().len();
+        if step >= steps {
+            return Err(StageError::Step { step, steps });
+        }
         let objects = self.scene.objects().iter().zip(&self.objects);
-        objects.flat_map(move |(object, placed)| {
+        let made = objects.flat_map(move |(object, placed)| {
             let plan = self.plan(object, placed, step, wanted);
             let view = *plan.view();
             let surfaces = plan.carry_out(wanted);
             surfaces
                 .into_iter()
                 .map(move |surface| self.photosurface(object, step, &view, surface, wanted))
-        })
+        });
+        Ok(made)
     }
 
     /// What refinement starts from at one step, for each object.

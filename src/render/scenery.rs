@@ -52,7 +52,7 @@ const FACETS: f64 = 1e-4;
 ///          "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1 } }, "position": [0, 0, -5] } ] }"#,
 /// )?;
 /// let (models, _) = load_models(&scene, ".".as_ref())?;
-/// let stage = Stage::new(scene, models);
+/// let stage = Stage::new(scene, models)?;
 /// let mut scenery = Scenery::new();
 /// for (object, parts) in stage.objects() {
 ///     for (_, part) in parts {

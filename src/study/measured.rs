@@ -67,7 +67,9 @@ pub(super) fn measure(stage: &Stage, wanted: Wanted, triangles: usize, samples: 
         let owners = stage
             .objects()
             .flat_map(|(object, parts)| parts.iter().map(move |_| object));
-        for (photosurface, object) in stage.photosurfaces(step, wanted).zip(owners) {
+        let photosurfaces = stage.photosurfaces(step, wanted);
+        let photosurfaces = photosurfaces.expect("a step of the scene");
+        for (photosurface, object) in photosurfaces.zip(owners) {
             let view = View::new(&observer, &object.world_line(), proper_time);
             let surface = TrueSurface::of(object);
             let here = photosurface.facts.triangles;

@@ -100,7 +100,7 @@ pub(super) fn mesh_cost(
     let stage = Stage::new(
         scene.clone().with_tolerance_for_all(tolerance),
         models.to_vec(),
-    );
+    )?;
     let wanted = Wanted {
         attributes: Format::Glb.attributes(stage.scene()),
         subdivide: true,
@@ -182,9 +182,10 @@ fn run(stage: &Stage, wanted: Wanted, tolerance: Tolerance) -> Result<Run, Study
     black_box(stage.predictions(wanted));
     let predict = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let photosurfaces: Vec<Photosurface> = (0..stage.scene().steps().len())
-        .flat_map(|step| stage.photosurfaces(step, wanted))
-        .collect();
+    let mut photosurfaces: Vec<Photosurface> = vec![];
+    for step in 0..stage.scene().steps().len() {
+        photosurfaces.extend(stage.photosurfaces(step, wanted)?);
+    }
     let photosurface = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let mut sink = Counting(0);

@@ -24,7 +24,7 @@ pub use ray_cost::{Pictures, RayCost, RaySettings};
 pub use uniform::{UniformCost, UniformRun};
 
 use crate::material::Model;
-use crate::pipeline::{SceneFacts, Stage};
+use crate::pipeline::{SceneFacts, Stage, StageError};
 use crate::scene::{Scene, Tolerance, Unit};
 use crate::write::WriteError;
 
@@ -130,6 +130,17 @@ pub enum StudyError {
     /// Tolerances that cannot be put in order.
     #[error("the tolerances {0} and {1} differ in their units, expected one unit for all")]
     MixedUnits(Tolerance, Tolerance),
+    /// Not one model for each object, or one that is nowhere.
+    #[error(transparent)]
+    Stage(#[from] StageError),
+    /// Not one camera for each step.
+    #[error("there are {cameras} cameras for {steps} steps, expected one for each")]
+    Cameras {
+        /// How many steps the scene has.
+        steps: usize,
+        /// How many cameras there are.
+        cameras: usize,
+    },
     /// Photosurfaces that no file can hold.
     #[error("at the tolerance {tolerance}")]
     Write {
@@ -147,11 +158,7 @@ impl CostStudy {
     /// # Errors
     ///
     /// Nothing to study; one tolerance or number of rays twice, or tolerances of several units; photosurfaces that do
-    /// not make a file; textures that cannot be decoded.
-    ///
-    /// # Panics
-    ///
-    /// If there are not as many models as objects, or for pictures not as many cameras as steps.
+    /// not make a file; not as many models as objects, or for pictures not as many cameras as steps.
     pub fn new(
         scene: &Scene,
         models: &[Model],
@@ -164,6 +171,10 @@ impl CostStudy {
         if tolerances.is_empty() && samples.is_empty() {
             return Err(StudyError::Nothing);
         }
+        let steps = scene.steps().len();
+        if let Some(cameras) = rays.map(|rays| rays.cameras.len()).filter(|&n| n != steps) {
+            return Err(StudyError::Cameras { steps, cameras });
+        }
         let unit = tolerances.first().map(|first| first.unit());
         // From loose to tight, so that what an allocator keeps of one says little of the next one's memory.
         let mut meshes = Vec::with_capacity(tolerances.len());
@@ -171,7 +182,7 @@ impl CostStudy {
             let cost = mesh_cost::mesh_cost(scene, models, tolerance, settings, &mut done)?;
             meshes.push(cost);
         }
-        let stage = Stage::new(scene.clone(), models.to_vec());
+        let stage = Stage::new(scene.clone(), models.to_vec())?;
         let (pictures, rays) = match rays {
             Some(rays) if !samples.is_empty() => {
                 let repeats = settings.repeats.get();
@@ -245,6 +256,27 @@ mod tests {
         let study = CostStudy::new(&scene, &models, &settings, || done += 1).unwrap();
         assert!(study.meshes[0].made.is_some() && study.meshes[1].made.is_none());
         assert_eq!((done, settings.pieces()), (10, 10));
+    }
+
+    #[test]
+    fn what_does_not_fit_the_scene_is_refused() {
+        let text =
+            r#"{ "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1 } } } ] }"#;
+        let scene = Scene::from_json(text).unwrap();
+        let (models, _) = crate::jobs::load_models(&scene, ".".as_ref()).unwrap();
+        let study = |models: &[Model], rays| {
+            let settings = CostSettings {
+                rays,
+                ..CostSettings::default()
+            };
+            CostStudy::new(&scene, models, &settings, || ())
+                .unwrap_err()
+                .to_string()
+        };
+        let of_models = study(&[], None);
+        assert!(of_models.contains("0 models for 1 objects"), "{of_models}");
+        let of_cameras = study(&models, Some(RaySettings::new(vec![])));
+        assert!(of_cameras.contains("0 cameras for 1 steps"), "{of_cameras}");
     }
 
     #[test]

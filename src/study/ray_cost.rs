@@ -122,7 +122,7 @@ pub struct RayCost {
 /// Pictures of all steps, one after the other, as the linear light of their pixels.
 type Light = Vec<Vec3>;
 
-/// Studies each of `samples`, the fewest first and at least one; `done` is called after each picture.
+/// Studies each of `samples`, the fewest first and at least one, with one camera for each step; `done` is called after each picture.
 pub(super) fn ray_costs(
     stage: &Stage,
     settings: &RaySettings,
@@ -132,7 +132,6 @@ pub(super) fn ray_costs(
 ) -> (Pictures, Vec<RayCost>) {
     let cameras = &settings.cameras[..];
     let steps = stage.scene().steps().len();
-    assert_eq!(cameras.len(), steps, "a camera for each step");
     let size = cameras[0].size();
     let finest = samples[samples.len() - 1];
     let mut scenery = Scenery::with_textures(&settings.textures);

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::pipeline::StageError;
+
 /// Why photosurfaces do not make a file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -97,6 +99,12 @@ pub enum WriteError {
         /// What it says.
         source: io::Error,
     },
+    /// There are no photosurfaces.
+    #[error(transparent)]
+    Stage(#[from] StageError),
+    /// All writing has been abandoned: see [`abandon_writes`](crate::abandon_writes).
+    #[error("cancelled: all writing has been abandoned")]
+    Cancelled,
     /// The operating system says no to a stream.
     #[error("cannot write")]
     Stream(#[from] io::Error),

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::{Builder, NamedTempFile};
+use thiserror::Error;
 
 use super::WriteError;
 
@@ -156,24 +157,49 @@ pub(super) fn directory_of(path: &Path) -> &Path {
     }
 }
 
-/// The temporary files of all writes in progress.
-static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+/// All writes in progress.
+static WRITES: Mutex<Writes> = Mutex::new(Writes {
+    unfinished: BTreeSet::new(),
+    are_abandoned: false,
+});
 
-fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
-    // A set of names is sound whoever panicked.
-    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+struct Writes {
+    /// Their temporary files.
+    unfinished: BTreeSet<PathBuf>,
+    /// Whether no file may be begun or finished any more.
+    are_abandoned: bool,
+}
+
+/// What writing ends with once it has been abandoned.
+#[derive(Debug, Error)]
+#[error("cancelled")]
+struct Cancelled;
+
+impl Writes {
+    fn lock() -> MutexGuard<'static, Self> {
+        // A set of names is sound whoever panicked.
+        WRITES.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Those in progress, where they may go on.
+    fn going_on() -> std::io::Result<MutexGuard<'static, Self>> {
+        let writes = Self::lock();
+        match writes.are_abandoned {
+            true => Err(std::io::Error::other(Cancelled)),
+            false => Ok(writes),
+        }
+    }
 }
 
 /// Removes the temporary files of all writes in progress, and stops all writing for good: for a program that
-/// was told to end and does so right after. What was finished before stays.
+/// was told to end. What was finished before stays; every other write ends with [`WriteError::Cancelled`].
 pub fn abandon_writes() {
-    let unfinished = unfinished();
-    for path in unfinished.iter() {
+    let mut writes = Writes::lock();
+    writes.are_abandoned = true;
+    for path in &writes.unfinished {
         // There is nobody left to tell.
         let _ = fs::remove_file(path);
     }
-    // Never unlocked: no file can be begun or finished any more.
-    std::mem::forget(unfinished);
 }
 
 /// A temporary file that [`abandon_writes`] knows of.
@@ -189,11 +215,11 @@ impl Unfinished {
         make: impl FnOnce() -> std::io::Result<NamedTempFile>,
         replaced: Option<Metadata>,
     ) -> std::io::Result<Self> {
-        let mut unfinished = unfinished();
+        let mut writes = Writes::going_on()?;
         let file = make()?;
         // Absolute or not: the program never changes its directory.
         let path = file.path().to_owned();
-        unfinished.insert(path.clone());
+        writes.unfinished.insert(path.clone());
         let file = Some(file);
         Ok(Self {
             file,
@@ -229,9 +255,9 @@ impl Unfinished {
     fn persist(mut self, place: &Path) -> std::io::Result<()> {
         let file = self.finished()?;
         // Held while the file gets its name: it is either unfinished or finished.
-        let unfinished = unfinished();
+        let writes = Writes::going_on()?;
         let persisted = file.persist(place);
-        drop(unfinished);
+        drop(writes);
         persisted.map(drop).map_err(|error| error.error)
     }
 }
@@ -243,7 +269,7 @@ pub(super) fn persist_both(
     (mut second, second_place): (Unfinished, &Path),
 ) -> std::io::Result<()> {
     let (first_file, second_file) = (first.finished()?, second.finished()?);
-    let unfinished = unfinished();
+    let writes = Writes::going_on()?;
     let is_new = !first_place.exists();
     let persisted = first_file.persist(first_place).and_then(|_| {
         second_file.persist(second_place).inspect_err(|_| {
@@ -253,7 +279,7 @@ pub(super) fn persist_both(
             }
         })
     });
-    drop(unfinished);
+    drop(writes);
     persisted.map(drop).map_err(|error| error.error)
 }
 
@@ -261,7 +287,7 @@ impl Drop for Unfinished {
     fn drop(&mut self) {
         // The file first: it must not be there when its name is forgotten.
         drop(self.file.take());
-        unfinished().remove(&self.path);
+        Writes::lock().unfinished.remove(&self.path);
     }
 }
 
@@ -287,6 +313,9 @@ pub(super) fn temporary_in(
 }
 
 pub(super) fn io_error(path: &Path, source: std::io::Error) -> WriteError {
+    if source.get_ref().is_some_and(|said| said.is::<Cancelled>()) {
+        return WriteError::Cancelled;
+    }
     // tempfile names its file behind what the system says; nobody else knows that file.
     let text = source.to_string();
     let source = match text.split_once(" at path ") {

@@ -31,7 +31,7 @@ impl Format {
             .collect();
         let steps = 0..stage.scene().steps().len();
         for step in steps.filter(|&step| !stage.is_within_f32(step, &boxes)) {
-            for photosurface in stage.photosurfaces(step, wanted) {
+            for photosurface in stage.photosurfaces(step, wanted)? {
                 let (name, mesh) = (&photosurface.facts.name, &photosurface.mesh);
                 match self {
                     Self::Glb | Self::Gltf => {
@@ -88,7 +88,7 @@ mod tests {
         );
         let scene = Scene::from_json(&scene).unwrap();
         let (models, _) = load_models(&scene, "".as_ref()).unwrap();
-        Stage::new(scene, models)
+        Stage::new(scene, models).unwrap()
     }
 
     #[test]

@@ -146,13 +146,13 @@ mod tests {
         let asked_for = scene.attributes();
         let scene = Scene::new(Observer::default(), objects).unwrap();
         let scene = scene.with_attributes(asked_for);
-        let stage = Stage::new(scene.with_steps(vec![0.0, 1.0, 2.0]).unwrap(), models);
+        let stage = Stage::new(scene.with_steps(vec![0.0, 1.0, 2.0]).unwrap(), models).unwrap();
         let wanted = Wanted {
             attributes: Format::Ply.attributes(stage.scene()),
             ..Wanted::default()
         };
         let photosurfaces: Vec<_> = (0..3)
-            .flat_map(|step| stage.photosurfaces(step, wanted))
+            .flat_map(|step| stage.photosurfaces(step, wanted).unwrap())
             .collect();
         let export = Export {
             scene: &stage.facts(),

@@ -41,7 +41,10 @@ fn photosurfaces(mesh: Mesh) -> (Stage, Vec<Photosurface>) {
     };
     sighting.wanted.attributes.doppler = true;
     let stage = sighting.stage(Source::Model(Arc::new(model(&[mesh]))));
-    let made = stage.photosurfaces(0, sighting.wanted).collect();
+    let made = stage
+        .photosurfaces(0, sighting.wanted)
+        .expect("a step")
+        .collect();
     (stage, made)
 }
 

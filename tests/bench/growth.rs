@@ -117,7 +117,7 @@ fn stage(objects: Vec<(Object, Arc<Model>)>) -> Stage {
     let (objects, models): (Vec<_>, Vec<_>) = objects.into_iter().unzip();
     let scene = Scene::new(observer(), objects).expect("names of their own");
     let models = models.iter().map(|model| Model::clone(model)).collect();
-    Stage::new(scene, models)
+    Stage::new(scene, models).expect("one model an object")
 }
 
 fn object(name: &str, model: Arc<Model>) -> (Object, Arc<Model>) {
@@ -198,7 +198,10 @@ fn steps(count: u32) -> Duration {
             .map(|k| f64::from(k) / f64::from(count))
             .collect();
         let scene = scene.with_steps(times).expect("finite times");
-        unrefined(&Stage::new(scene, vec![Model::clone(&cube)]), count)
+        unrefined(
+            &Stage::new(scene, vec![Model::clone(&cube)]).expect("one model"),
+            count,
+        )
     })
 }
 
@@ -207,7 +210,8 @@ fn unrefined(stage: &Stage, steps: u32) -> usize {
         subdivide: false,
         ..Wanted::default()
     };
-    let surfaces = (0..steps as usize).flat_map(|step| stage.photosurfaces(step, wanted));
+    let surfaces =
+        (0..steps as usize).flat_map(|step| stage.photosurfaces(step, wanted).expect("a step"));
     surfaces.map(|surface| surface.mesh.positions().len()).sum()
 }
 

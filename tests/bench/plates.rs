@@ -42,7 +42,12 @@ fn main() {
             let mut times: Vec<Duration> = (0..REPEATS)
                 .map(|_| {
                     let start = Instant::now();
-                    let made = pool.install(|| stage.photosurfaces(0, sighting.wanted).count());
+                    let made = pool.install(|| {
+                        stage
+                            .photosurfaces(0, sighting.wanted)
+                            .expect("a step")
+                            .count()
+                    });
                     assert_eq!(made, 1);
                     start.elapsed()
                 })

@@ -74,7 +74,7 @@ struct Sight {
 impl Sight {
     fn new(scene: Scene, camera: Camera) -> Self {
         let (models, _) = load_models(&scene, ".".as_ref()).expect("nothing to be read");
-        let stage = Stage::new(scene, models);
+        let stage = Stage::new(scene, models).expect("one model an object");
         let mut scenery = Scenery::new();
         for (object, parts) in stage.objects() {
             for (_, part) in parts {

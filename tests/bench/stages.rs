@@ -49,7 +49,14 @@ fn without_subdivision(criterion: &mut Criterion) {
             let pool = pool(threads);
             let id = BenchmarkId::new(format!("threads {threads}"), vertices);
             group.bench_function(id, |bencher| {
-                bencher.iter(|| pool.install(|| stage.photosurfaces(0, sighting.wanted).count()));
+                bencher.iter(|| {
+                    pool.install(|| {
+                        stage
+                            .photosurfaces(0, sighting.wanted)
+                            .expect("a step")
+                            .count()
+                    })
+                });
             });
         }
     }
@@ -63,15 +70,21 @@ fn plates(criterion: &mut Criterion) {
         for e in [1e-3, 1e-4, 1e-5] {
             let sighting = sighting(e);
             let stage = stage(&sighting, plate(h));
-            let made = stage.photosurfaces(0, sighting.wanted);
+            let made = stage.photosurfaces(0, sighting.wanted).expect("a step");
             let triangles: usize = made.map(|photosurface| photosurface.facts.triangles).sum();
             group.throughput(Throughput::Elements(triangles as u64));
             for threads in THREADS {
                 let pool = pool(threads);
                 let id = BenchmarkId::new(format!("threads {threads}, h {h}"), format!("{e:e}"));
                 group.bench_function(id, |bencher| {
-                    bencher
-                        .iter(|| pool.install(|| stage.photosurfaces(0, sighting.wanted).count()));
+                    bencher.iter(|| {
+                        pool.install(|| {
+                            stage
+                                .photosurfaces(0, sighting.wanted)
+                                .expect("a step")
+                                .count()
+                        })
+                    });
                 });
             }
         }

@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use crate::common::alone::alone;
 use crate::common::command::{Workplace, glb_json};
 use crate::common::glb::Glb;
 use crate::common::refining::{Sighting, model, plate};
 use photosurface::{
-    DVec3, Event, Lorentz, Mesh, Object, Observer, PhotosurfaceMap, Precision, Scene, Source,
-    Stage, Tolerance, Velocity, View, Wanted, WorldLine, load_models,
+    DAffine3, DVec3, Event, Lorentz, Mesh, Object, Observer, PhotosurfaceMap, Precision, Scene,
+    Source, Stage, Tolerance, Velocity, View, Wanted, WorldLine, WriteError, abandon_writes,
+    destination, load_models, write_whole,
 };
 use serde_json::json;
 
@@ -366,7 +368,9 @@ fn coordinates_of_any_size_do_not_halve_for_ever() {
             ..Wanted::default()
         };
         let made = Stage::new(scene, models)
+            .unwrap()
             .photosurfaces(0, wanted)
+            .unwrap()
             .next()
             .unwrap();
         assert!(made.facts.certificate.minimum_triangles >= 1.0, "{size}");
@@ -492,4 +496,54 @@ fn what_keeps_up_with_the_observer_is_seen_at_rest() {
             workplace.run(command).success();
         }
     }
+}
+
+/// Writing used to be abandoned with a lock that nobody released: whoever wrote on waited for ever.
+#[test]
+fn writes_that_are_abandoned_end_with_an_error() {
+    alone(
+        "regression::writes_that_are_abandoned_end_with_an_error",
+        || {
+            let directory = tempfile::tempdir().unwrap();
+            let path = directory.path().join("out.ply");
+            let begun = write_whole(&path, |_| {
+                abandon_writes();
+                Ok(())
+            });
+            assert!(matches!(begun, Err(WriteError::Cancelled)), "{begun:?}");
+            let later = write_whole(&path, |_| Ok(()));
+            assert!(matches!(later, Err(WriteError::Cancelled)), "{later:?}");
+            assert!(matches!(destination(&path), Err(WriteError::Cancelled)));
+            assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0);
+        },
+    );
+}
+
+/// Each of these used to panic, or to make photosurfaces of NaN.
+#[test]
+fn a_stage_is_made_of_what_fits_or_not_at_all() {
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+    let nowhere = mesh.clone().transformed(&DAffine3::from_scale(DVec3::NAN));
+    let of = |mesh: Mesh| {
+        let source = Source::Model(Arc::new(model(&[mesh])));
+        let scene = Scene::new(Observer::default(), vec![Object::new("triangle", source)]);
+        let (models, _) = load_models(scene.as_ref().unwrap(), ".".as_ref()).unwrap();
+        (scene.unwrap(), models)
+    };
+    let (scene, models) = of(mesh);
+    let none = Stage::new(scene.clone(), vec![]).unwrap_err().to_string();
+    assert!(none.contains("0 models for 1 objects"), "{none}");
+    let stage = Stage::new(scene, models).unwrap();
+    let late = stage.photosurfaces(1, Wanted::default()).err().unwrap();
+    assert!(
+        late.to_string().contains("step 1 of a scene with 1"),
+        "{late}"
+    );
+    let (scene, models) = of(nowhere);
+    let odd = Stage::new(scene, models).unwrap_err().to_string();
+    assert!(
+        odd.contains("part \"part0\" of object \"triangle\""),
+        "{odd}"
+    );
 }

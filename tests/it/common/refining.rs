@@ -54,7 +54,7 @@ impl Sighting {
             .expect("one object with a name")
             .with_tolerance(self.tolerance);
         let (models, _) = load_models(&scene, ".".as_ref()).expect("nothing to be read");
-        Stage::new(scene, models)
+        Stage::new(scene, models).expect("one model an object")
     }
 
     pub(crate) fn of_source(&self, source: Source) -> Vec<Sighted> {
@@ -64,7 +64,7 @@ impl Sighting {
     /// The photosurfaces of a stage of this sighting.
     pub(crate) fn sighted(&self, stage: &Stage) -> Vec<Sighted> {
         let map = PhotosurfaceMap::new(&self.velocity);
-        let surfaces = stage.photosurfaces(0, self.wanted);
+        let surfaces = stage.photosurfaces(0, self.wanted).expect("a step");
         let sighted = surfaces.map(|surface| Sighted {
             certificate: surface.facts.certificate,
             rest: (surface.mesh.positions().iter())
@@ -305,9 +305,6 @@ pub(crate) fn distance_to_triangle(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let normal = (b - a).cross(c - a);
     let sides = [(a, b), (b, c), (c, a)];
     let inside = |&(from, to): &(DVec3, DVec3)| (to - from).cross(point - from).dot(normal) >= 0.0;
-    if normal != DVec3::ZERO && sides.iter().all(inside) {
-        return (point - a).dot(normal).abs() / normal.length();
-    }
     let to_side = |(from, to): (DVec3, DVec3)| {
         let along = to - from;
         let part = (point - from).dot(along) / along.length_squared();
@@ -318,7 +315,12 @@ pub(crate) fn distance_to_triangle(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
         };
         point.distance(from + along * part)
     };
-    sides.map(to_side).into_iter().fold(f64::INFINITY, f64::min)
+    let beside = sides.map(to_side).into_iter().fold(f64::INFINITY, f64::min);
+    if normal != DVec3::ZERO && sides.iter().all(inside) {
+        // The normal of a needle may be noise.
+        return beside.min((point - a).dot(normal).abs() / normal.length());
+    }
+    beside
 }
 
 /// The distance of a point from the nearest triangle of a mesh.

@@ -22,7 +22,7 @@ const SCENE: &str = r#"{
 fn stage() -> Stage {
     let scene = Scene::from_json(SCENE).expect("a scene");
     let (models, _) = load_models(&scene, "".as_ref()).expect("nothing to read");
-    Stage::new(scene, models)
+    Stage::new(scene, models).expect("one model an object")
 }
 
 /// The places at rest are those of the first step, wherever they are asked for.
@@ -98,7 +98,7 @@ fn one_mesh_for_all_steps_is_no_finer_than_it_has_to_be() {
     let stage = stage();
     for (index, steps) in morphing(&stage).iter().enumerate() {
         let alone = |step| {
-            let mut surfaces = stage.photosurfaces(step, Wanted::default());
+            let mut surfaces = stage.photosurfaces(step, Wanted::default()).unwrap();
             surfaces
                 .nth(index)
                 .expect("one part an object")
@@ -310,7 +310,7 @@ fn attributes_are_there_when_asked_for() {
             .iter()
             .all(|factor| *factor == 1.0)
     );
-    let surfaces = (0..5).flat_map(|step| stage.photosurfaces(step, Wanted::default()));
+    let surfaces = (0..5).flat_map(|step| stage.photosurfaces(step, Wanted::default()).unwrap());
     for (mesh, surface) in meshes.zip(surfaces) {
         let attributes = &mesh["primitives"][0]["attributes"];
         let numbers = |name: &str| file.numbers(&attributes[name]);

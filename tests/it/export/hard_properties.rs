@@ -26,7 +26,7 @@ fn stage(mesh: &Mesh, place: DVec3, velocity: Velocity) -> Stage {
     };
     let scene = Scene::new(observer, vec![object]).expect("one object with a name");
     let (models, _) = load_models(&scene, ".".as_ref()).expect("nothing to be read");
-    Stage::new(scene, models)
+    Stage::new(scene, models).expect("one model an object")
 }
 
 /// Triangles a photosurface is refined to, about: at the tip of a cone of light a tolerance of 1e-3 takes as many as
@@ -40,7 +40,7 @@ fn export(stage: Stage, subdivide: bool) -> Result<Vec<u8>, WriteError> {
         ..Wanted::default()
     };
     let (stage, _) = stage.within_budget(wanted, BUDGET);
-    let photosurfaces: Vec<_> = stage.photosurfaces(0, wanted).collect();
+    let photosurfaces: Vec<_> = stage.photosurfaces(0, wanted).expect("a step").collect();
     let scene = stage.facts();
     let export = Export {
         scene: &scene,
@@ -204,6 +204,7 @@ fn the_condition_is_the_largest_stretch_at_a_vertex() {
         let stage = stage(&mesh, DVec3::ZERO, velocity);
         let made = stage
             .photosurfaces(0, Wanted::default())
+            .expect("a step")
             .next()
             .expect("one part");
         let condition = made.facts.condition;
@@ -489,7 +490,7 @@ proptest! {
     ) {
         let wanted = Wanted { precision: Precision::Double, subdivide: false, ..Wanted::default() };
         let stage = stage(&triangle(corners), DVec3::ZERO, velocity);
-        let made = stage.photosurfaces(0, wanted).next().expect("one part");
+        let made = stage.photosurfaces(0, wanted).unwrap().next().expect("one part");
         for position in made.mesh.positions() {
             prop_assert!(!position.is_nan(), "{position}");
         }

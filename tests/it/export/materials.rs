@@ -75,14 +75,14 @@ fn pass_through(name: &str) -> (Glb, Vec<String>) {
     let object = Object::new("it", Source::Model(Arc::new(model.clone())));
     let scene = Scene::new(Observer::default(), vec![object]).expect("one object");
     let scene = scene.with_steps(vec![0.0, 1.0]).expect("two steps");
-    let stage = Stage::new(scene, vec![model]);
+    let stage = Stage::new(scene, vec![model]).expect("one model an object");
     let wanted = Wanted {
         subdivide: false,
         ..Wanted::default()
     };
     let steps = 0..2;
     let photosurfaces: Vec<Photosurface> = steps
-        .flat_map(|step| stage.photosurfaces(step, wanted))
+        .flat_map(|step| stage.photosurfaces(step, wanted).expect("a step"))
         .collect();
     let export = Export {
         scene: &stage.facts(),

@@ -329,8 +329,10 @@ fn written(model: &Model) -> (Value, Vec<u8>, Vec<u8>) {
     let stage = Stage::new(
         scene.expect("two objects"),
         vec![model.clone(), model.clone()],
-    );
-    let photosurfaces: Vec<Photosurface> = stage.photosurfaces(0, Wanted::default()).collect();
+    )
+    .expect("one model an object");
+    let photosurfaces: Vec<Photosurface> =
+        stage.photosurfaces(0, Wanted::default()).unwrap().collect();
     let export = Export {
         scene: &stage.facts(),
         marker: None,

@@ -25,7 +25,7 @@ fn stage(scene: &Value, tolerance: Tolerance) -> Stage {
     let scene = Scene::from_json(&scene.to_string()).expect("a valid scene");
     let scene = scene.with_tolerance_for_all(tolerance);
     let (models, _) = load_models(&scene, ".".as_ref()).expect("shapes, and a fixture");
-    Stage::new(scene, models)
+    Stage::new(scene, models).expect("one model an object")
 }
 
 /// What the observer sees at the first step, by rays.
@@ -44,7 +44,7 @@ fn by_rays(stage: &Stage, camera: &Camera) -> Picture {
 fn by_meshes(stage: &Stage, camera: &Camera, wanted: Wanted) -> (Picture, f64) {
     let mut scenery = Scenery::new();
     let mut angle = 0.0_f64;
-    for surface in stage.photosurfaces(0, wanted) {
+    for surface in stage.photosurfaces(0, wanted).expect("a step") {
         let objects = stage.scene().objects().iter();
         let object = objects
             .clone()

@@ -31,7 +31,7 @@ fn wanted() -> Wanted {
 
 fn stage(scene: Scene) -> Stage {
     let (models, _) = load_models(&scene, ".".as_ref()).unwrap();
-    Stage::new(scene, models)
+    Stage::new(scene, models).expect("one model an object")
 }
 
 fn rest_positions(surface: &Photosurface) -> &[DVec3] {
@@ -84,7 +84,7 @@ fn assert_covering(stage: Stage, case: &str) -> usize {
     let (stage, _) = stage.within_budget(wanted(), MOST_TRIANGLES);
     let mut added = 0;
     for step in 0..stage.scene().steps().len() {
-        let surfaces: Vec<_> = stage.photosurfaces(step, wanted()).collect();
+        let surfaces: Vec<_> = stage.photosurfaces(step, wanted()).unwrap().collect();
         for (object, parts) in stage.objects() {
             let before = Extent::of(
                 parts

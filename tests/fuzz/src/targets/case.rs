@@ -103,7 +103,7 @@ impl Case {
             std::fs::write(folder.join(MESH), &self.mesh).expect("a temporary folder takes a file");
         }
         let (models, _) = load_models(&scene, folder).ok()?;
-        Some(Stage::new(scene, models))
+        Some(Stage::new(scene, models).expect("one model an object"))
     }
 
     /// The flags of `photosurface export` that do the same.

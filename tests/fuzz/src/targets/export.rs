@@ -43,7 +43,7 @@ pub fn export(bytes: &[u8]) {
         let made: Vec<Vec<Photosurface>> = match morphing {
             true => stage.morphing(wanted).collect(),
             false => (0..steps)
-                .map(|step| stage.photosurfaces(step, wanted).collect())
+                .map(|step| stage.photosurfaces(step, wanted).expect("a step").collect())
                 .collect(),
         };
         let facts = made.iter().flatten().map(|made| made.facts.clone());

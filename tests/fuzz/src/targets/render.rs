@@ -94,7 +94,7 @@ fn photosurfaces(stage: &Stage, step: usize, wanted: Wanted) -> Scenery {
     if let Some(marker) = stage.marker() {
         scenery.add_plain(marker);
     }
-    for surface in stage.photosurfaces(step, wanted) {
+    for surface in stage.photosurfaces(step, wanted).expect("a step") {
         let mut objects = stage.scene().objects().iter();
         let object = objects
             .find(|object| object.name == surface.facts.object)
