@@ -12,8 +12,8 @@
 //!
 //! Conventions: c = 1; lengths and times share one unit; right-handed coordinates, y up; angles in radians.
 //! Everything is computed in `f64`. The *scene frame* is that of the scene; the *rest frame* of an object
-//! moves with it, the *observer's frame* with the observer; the axes of both are those of the scene under a
-//! pure boost.
+//! moves with it, its axes those of the scene under a pure boost; the *observer's frame* is that of a [`Moment`], its
+//! axes the same under a pure boost unless the observer's are turned.
 
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
@@ -63,7 +63,7 @@ pub use shape::{
     Appearance, Cells, Color, Cone, Count, Cuboid, Cylinder, Grid, Lattice, Length, Rod, Shape,
     ShapeError, Sphere, Torus,
 };
-pub use spacetime::{Event, Lorentz, MAX_RAPIDITY, Velocity, VelocityError, WorldLine};
+pub use spacetime::{Event, Lorentz, MAX_RAPIDITY, Moment, Velocity, VelocityError, WorldLine};
 pub use study::{
     CostSettings, CostStudy, Made, MeshCost, Pictures, RayCost, RaySettings, Seconds, StudyError,
     UniformCost, UniformRun,

@@ -15,7 +15,7 @@ use super::output::{FileFormat, check_range};
 /// Validate a scene or a mesh, and say what an export would make
 ///
 /// Reads everything that an export would read and prints, for every object, its parts, how fast it moves relative to
-/// the observer, how many triangles there are before refinement and about how many its photosurfaces take, both of all
+/// the observer, at its fastest, how many triangles there are before refinement and about how many its photosurfaces take, both of all
 /// steps together, and whether they will be certified to be within the tolerance.
 /// Makes and writes nothing. Exit status: 0 where that of the export will be 0, 1 where it will be 1 (not certified), or
 /// where the steps do not fit into one file but may into several (--split), 2 an error, 130 interrupted.
@@ -90,7 +90,7 @@ fn table(stage: &Stage, predictions: &[Prediction], out: &mut dyn Write) -> anyh
     )?;
     let mut parts_of_all = 0;
     for ((object, parts), prediction) in stage.objects().zip(predictions) {
-        let relative = stage.relative_velocity(object);
+        let relative = stage.fastest_relative_velocity(object);
         writeln!(
             out,
             "{:<20} {:>6} {:>12} {:>13.6e} {:>10.6} {:>12} {:>16} {:>9}",

@@ -327,7 +327,7 @@ impl OutputArgs {
 /// Without a speed there is little to study.
 fn tell_of_rest(input: &Input, verbosity: Verbosity) -> anyhow::Result<()> {
     let stage = Stage::new(input.scene.clone(), input.models.clone())?;
-    let is_at_rest = |object| stage.relative_velocity(object).rapidity() == 0.0;
+    let is_at_rest = |object| stage.fastest_relative_velocity(object).rapidity() == 0.0;
     if input.scene.objects().iter().all(is_at_rest) {
         verbosity.note(
             "nothing moves relative to the observer: each photosurface is the shape itself; give a speed, such as \

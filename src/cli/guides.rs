@@ -90,11 +90,9 @@ impl GuideArgs {
         stage: &Stage,
         step: usize,
     ) -> (Vec<(Mesh, Strokes<DVec3>)>, Vec<DVec3>) {
-        let observer = stage.scene().observer().world_line();
-        let proper_time = stage.scene().steps()[step];
         let mut ghosts = Vec::new();
         for (object, parts) in stage.objects() {
-            let view = View::new(&observer, &object.world_line(), proper_time);
+            let view = stage.view(object, step);
             let bounds = parts.iter().filter_map(|(_, part)| part.mesh().bounds());
             let (low, high) = bounds.fold(
                 (DVec3::INFINITY, DVec3::NEG_INFINITY),

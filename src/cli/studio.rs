@@ -146,8 +146,8 @@ impl<'a> Studio<'a> {
     fn observer_view(&mut self, step: usize, fov: f64) -> anyhow::Result<Picture> {
         let places = rough_places(self.stage, step);
         let camera = self.camera.at_observer(fov, &places)?;
-        let line = self.stage.scene().observer().world_line();
-        let viewpoint = Viewpoint::Observer(&line, self.stage.scene().steps()[step]);
+        let moment = self.stage.scene().moment(step);
+        let viewpoint = Viewpoint::Observer(&moment);
         let mapped;
         let scenery = match &self.at_rest {
             Some(scenery) => scenery,

@@ -213,7 +213,10 @@ mod tests {
         };
         let velocity = Velocity::from_rapidity(rapidity, DVec3::new(1.0, 2.0, -3.0)).unwrap();
         let object = Velocity::from_beta(0.3, DVec3::new(-1.0, 0.5, 0.2)).unwrap();
-        View::new(&line(place, velocity), &line(DVec3::ZERO, object), 0.25)
+        View::new(
+            &line(place, velocity).moment(0.25),
+            &line(DVec3::ZERO, object),
+        )
     }
 
     /// Points in all directions, also all but ahead of and behind the observer, some tiny, huge or none.

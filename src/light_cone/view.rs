@@ -1,23 +1,23 @@
-//! How an observer in motion sees something else in motion: from two worldlines to the photosurface map.
+//! How an observer in motion sees something else in motion: from a moment and a worldline to the photosurface map.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::PhotosurfaceMap;
-use crate::spacetime::{Event, Lorentz, Velocity, WorldLine, length};
+use crate::spacetime::{Event, Lorentz, Moment, Velocity, WorldLine, length};
 
 /// How an observer sees, at one event, everything that moves with one velocity.
 ///
 /// Two frames are spoken of: the *rest frame* of the object, with the object's origin at its origin, and
-/// the *observer's frame*, with the observer there. The axes of both are those of the scene under a pure
-/// boost.
+/// the *observer's frame*, with the observer there. The axes of the rest frame are those of the scene under a pure
+/// boost, those of the observer's frame are the observer's own.
 ///
 /// # Derivation
 ///
-/// The observer's place in the rest frame is the boosted difference of the two worldlines' origins, plus
-/// the proper time times the observer's four-velocity in the rest frame: differences are taken of numbers
-/// as they are given, before anything is multiplied by `gamma`, and what they round is kept. The boosts from rest frame to scene and
+/// The observer's place in the rest frame is the boosted difference of the moment's and the worldline's origins, plus
+/// the moment's displacement in the rest frame: differences are taken of numbers as they are given, before anything is
+/// multiplied by `gamma`, and what they round is kept. The transformations from rest frame to scene and
 /// from scene to observer together are one boost, which the photosurface map takes care of, and a
-/// rotation (Wigner's), which follows it.
+/// rotation (Wigner's and that of the observer's axes), which follows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     observer_rest: DVec3,
@@ -30,19 +30,19 @@ pub struct View {
 }
 
 impl View {
-    /// How `observer`, at `proper_time` on its worldline, sees what moves along with `object`.
-    pub fn new(observer: &WorldLine, object: &WorldLine, proper_time: f64) -> Self {
-        let rest_to_observer = Lorentz::between(object.velocity, observer.velocity);
+    /// How the observer of `moment` sees what moves along with `object`.
+    pub fn new(moment: &Moment, object: &WorldLine) -> Self {
+        let rest_to_observer = moment.rest_to_observer(object.velocity);
         let relative = rest_to_observer.boost_velocity();
         let to_rest = Lorentz::boost(object.velocity);
-        let (difference, rounded) = observer.origin.exact_difference(&object.origin);
+        let (difference, rounded) = moment.origin().exact_difference(&object.origin);
         let origin = to_rest.apply(difference) + to_rest.apply(rounded);
-        let traveled = WorldLine {
-            origin: Event::default(),
-            velocity: relative,
-        }
-        .at(proper_time);
         let size = |event: Event| length(event.position).max(event.time.abs());
+        let (mut traveled, mut traveled_size) = (Event::default(), 0.0);
+        for leg in moment.displacements_in(object.velocity) {
+            traveled = traveled + leg;
+            traveled_size += size(leg);
+        }
         let place = origin.position + traveled.position;
         Self {
             // Beyond f64, where infinities may have cancelled.
@@ -51,7 +51,7 @@ impl View {
             } else {
                 DVec3::INFINITY
             },
-            place_size: size(origin) + size(traveled),
+            place_size: size(origin) + traveled_size,
             rest_to_observer,
             turn: DMat3::from_quat(rest_to_observer.rotation()),
             map: PhotosurfaceMap::new(&relative),
@@ -90,7 +90,7 @@ impl View {
         DAffine3::from_mat3_translation(matrix, -(matrix * self.observer_rest))
     }
 
-    /// How the observer's axes are turned against those that the boost alone would give (Wigner).
+    /// How the observer's axes are turned against those that the boost alone would give (Wigner, and the observer's own axes).
     pub fn rotation(&self) -> DQuat {
         self.rest_to_observer.rotation()
     }
@@ -187,7 +187,7 @@ mod tests {
         };
         let observer = line(0.5, DVec3::new(1.0, 2.0, -3.0), velocity(0.6, DVec3::X));
         let object = line(0.0, DVec3::Y, velocity(0.8, DVec3::new(1.0, 2.0, -2.0)));
-        let now = View::new(&observer, &object, 0.75).rest_to_now();
+        let now = View::new(&observer.moment(0.75), &object).rest_to_now();
         let to_scene = Lorentz::boost(object.velocity.reversed());
         let to_observer = Lorentz::boost(observer.velocity);
         for place in [DVec3::ZERO, DVec3::new(1.0, -2.0, 0.5), DVec3::Z] {

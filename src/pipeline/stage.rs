@@ -218,9 +218,21 @@ impl Stage {
         all.filter(|(wanted, _)| names::plain(wanted) != *wanted)
     }
 
-    /// The observer's velocity in the rest frame of an object.
-    pub fn relative_velocity(&self, object: &Object) -> Velocity {
-        self.view(object, 0.0).relative_velocity()
+    /// How the observer sees what moves along with an object, at one step.
+    ///
+    /// # Panics
+    ///
+    /// If the scene has no such step.
+    pub fn view(&self, object: &Object, step: usize) -> View {
+        View::new(&self.scene.moment(step), &object.world_line())
+    }
+
+    /// The observer's velocity in the rest frame of an object at the step, of all, at which it is fastest.
+    pub fn fastest_relative_velocity(&self, object: &Object) -> Velocity {
+        let steps = 0..self.scene.steps().len();
+        let velocities = steps.map(|step| self.view(object, step).relative_velocity());
+        let faster = |a: Velocity, b: Velocity| if b.rapidity() > a.rapidity() { b } else { a };
+        velocities.reduce(faster).unwrap_or_default()
     }
 
     /// The photosurfaces of all parts at one step, in the order of the scene.
@@ -265,7 +277,7 @@ impl Stage {
         const RANGE: std::ops::Range<f64> = 1e-30..1e30;
         let mut objects = self.scene.objects().iter().zip(boxes);
         objects.all(|(object, boxes)| {
-            let view = self.view(object, self.scene.steps()[step]);
+            let view = self.view(object, step);
             let stretch = view.relative_velocity().rapidity().exp();
             boxes.iter().all(|&(low, high)| {
                 let away = (low - view.observer_rest()).length() + (high - low).length();
@@ -280,14 +292,6 @@ impl Stage {
         SceneFacts::new(&self.scene, &self.origins)
     }
 
-    pub(super) fn view(&self, object: &Object, proper_time: f64) -> View {
-        View::new(
-            &self.scene.observer().world_line(),
-            &object.world_line(),
-            proper_time,
-        )
-    }
-
     pub(super) fn plan<'a>(
         &self,
         object: &Object,
@@ -295,7 +299,7 @@ impl Stage {
         step: usize,
         wanted: Wanted,
     ) -> Plan<'a> {
-        let view = self.view(object, self.scene.steps()[step]);
+        let view = self.view(object, step);
         let tolerance = self.scene.tolerance(object);
         Plan::new(placed, view, tolerance, wanted, placed.granted(step))
     }

@@ -60,10 +60,9 @@ impl<'a> Crowd<'a> {
         let mut starts: Vec<(usize, Option<WorldLine>)> = Vec::new();
         for body in bodies {
             let sight = match (viewpoint, body.stands) {
-                (
-                    Viewpoint::Observer(observer, proper_time),
-                    Stands::AtRest(line) | Stands::Mapped(line),
-                ) => Some(Sight::new(observer, &line, proper_time)),
+                (Viewpoint::Observer(moment), Stands::AtRest(line) | Stands::Mapped(line)) => {
+                    Some(Sight::new(moment, &line))
+                }
                 _ => None,
             };
             let rests = match (&sight, body.stands) {
@@ -319,8 +318,8 @@ mod tests {
         ] {
             let scene = Scene::from_json(BuiltInScene::named(name).unwrap().json).unwrap();
             let scenery = scenery(&scene);
-            let line = scene.observer().world_line();
-            let viewpoint = Viewpoint::Observer(&line, scene.steps()[0]);
+            let moment = scene.moment(0);
+            let viewpoint = Viewpoint::Observer(&moment);
             let crowd = Crowd::new(scenery.bodies.iter(), viewpoint);
             let alone = scenery.bodies.iter();
             let alone: Vec<_> = alone
@@ -359,7 +358,7 @@ mod tests {
         };
         let ball = scene(json!({ "sphere": { "radius": 9 } }));
         let cube = scene(json!({ "box": { "size": [9, 9, 9] } }));
-        let line = ball.observer().world_line();
+        let moment = ball.moment(0);
         let mut mapped = Scenery::new();
         let cubes = scenery(&cube);
         let Source::Shape(shape, appearance) = &cube.objects()[0].source else {
@@ -369,7 +368,7 @@ mod tests {
         mapped.add_photosurface(&cube.objects()[0], model.parts[0].mesh(), None);
         let balls = scenery(&ball);
         for (scenery, is_ball) in [(&balls, true), (&cubes, false), (&mapped, false)] {
-            let observer = Viewpoint::Observer(&line, 0.0);
+            let observer = Viewpoint::Observer(&moment);
             for (viewpoint, is_moving) in
                 [(observer, true), (Viewpoint::Outside(DVec3::ZERO), false)]
             {
@@ -414,8 +413,8 @@ mod tests {
         });
         let scene = Scene::from_json(&scene.to_string()).unwrap();
         let scenery = scenery(&scene);
-        let line = scene.observer().world_line();
-        let crowd = Crowd::new(scenery.bodies.iter(), Viewpoint::Observer(&line, 0.0));
+        let moment = scene.moment(0);
+        let crowd = Crowd::new(scenery.bodies.iter(), Viewpoint::Observer(&moment));
         counted::BOXES.set(0);
         let (mut rays_cast, mut hits) = (0, 0);
         for seen in rays(&camera(DVec3::NEG_Z)).step_by(7) {

@@ -18,7 +18,7 @@ use crate::material::{Material, Part};
 use crate::mesh::Mesh;
 use crate::scene::{Object, Source};
 use crate::shape::{Appearance, Color, Shape};
-use crate::spacetime::WorldLine;
+use crate::spacetime::Moment;
 
 /// How far facets of a round shape are from it, as a part of its size: less than a tenth of a pixel where it fills
 /// a picture 1000 pixels wide.
@@ -60,10 +60,10 @@ const FACETS: f64 = 1e-4;
 ///     }
 /// }
 /// let camera = Camera::new(PictureSize::new(64, 48)?, Projection::Pinhole { vertical_fov_deg: 30.0 }, DVec3::NEG_Z)?;
-/// let observer = stage.scene().observer().world_line();
+/// let moment = stage.scene().moment(0);
 /// let picture = scenery.picture(
 ///     &camera,
-///     Viewpoint::Observer(&observer, 0.0),
+///     Viewpoint::Observer(&moment),
 ///     PictureOptions::default(),
 ///     &|| (),
 /// );
@@ -81,8 +81,8 @@ pub struct Scenery {
 /// Where the picture is taken.
 #[derive(Clone, Copy, Debug)]
 pub enum Viewpoint<'a> {
-    /// By the observer, at a proper time on its worldline.
-    Observer(&'a WorldLine, f64),
+    /// By the observer, at one moment, in its own axes.
+    Observer(&'a Moment),
     /// At a place in the frame in which things stand.
     Outside(DVec3),
 }

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::cone::Cone;
-use crate::spacetime::{Lorentz, WorldLine, unit};
+use crate::spacetime::{Lorentz, Moment, WorldLine, unit};
 
 /// How light that an observer sees at one event came, for everything that moves with one velocity.
 ///
@@ -63,18 +63,16 @@ impl RestRay {
 }
 
 impl Sight {
-    /// How `observer`, at `proper_time` on its worldline, sees what moves along with `object`.
-    pub(super) fn new(observer: &WorldLine, object: &WorldLine, proper_time: f64) -> Self {
-        let rest_to_observer = Lorentz::between(object.velocity, observer.velocity);
+    /// How the observer of `moment` sees what moves along with `object`.
+    pub(super) fn new(moment: &Moment, object: &WorldLine) -> Self {
+        let rest_to_observer = moment.rest_to_observer(object.velocity);
         let relative = rest_to_observer.boost_velocity();
         // Differences are taken of the events as they are given, before anything grows by `gamma`.
-        let start = Lorentz::boost(object.velocity).apply(observer.origin - object.origin);
-        let flight = WorldLine {
-            origin: start,
-            velocity: relative,
-        };
+        let start = Lorentz::boost(object.velocity).apply(moment.origin() - object.origin);
+        let way = moment.displacements_in(object.velocity);
+        let event = way.fold(start, |event, leg| event + leg);
         Self {
-            observer_rest: flight.at(proper_time).position,
+            observer_rest: event.position,
             along: relative.direction(),
             rapidity: relative.rapidity(),
             grow: relative.rapidity().exp(),
@@ -162,6 +160,8 @@ struct Light {
 
 #[cfg(test)]
 mod tests {
+    use glam::DQuat;
+
     use super::*;
     use crate::spacetime::{Event, Velocity};
 
@@ -179,7 +179,7 @@ mod tests {
         all.filter_map(unit).collect()
     }
 
-    /// Through the scene frame, where all axes are given: two pure boosts, no rotation anywhere.
+    /// Through the scene frame, where all axes are given: two pure boosts, and the observer's own turn.
     #[test]
     fn rays_are_those_of_two_boosts_through_the_scene() {
         let speeds = [0.0, 0.3, 0.9, 0.99];
@@ -190,13 +190,14 @@ mod tests {
                 let object = Velocity::from_beta(other, other_way).unwrap();
                 let seen_from = line(0.5, DVec3::new(1.0, 2.0, -3.0), observer);
                 let thing = line(0.0, DVec3::new(0.25, -1.0, 2.0), object);
-                let sight = Sight::new(&seen_from, &thing, 1.5);
+                let turn = DQuat::from_rotation_arc(DVec3::Z, unit(other_way).unwrap());
+                let sight = Sight::new(&seen_from.moment(1.5).turned(turn), &thing);
                 for seen in directions() {
                     let ray = sight.ray(seen);
                     let distance = 3.0;
                     let to_scene = Lorentz::boost(observer.reversed());
-                    let emission =
-                        seen_from.at(1.5) + to_scene.apply(Event::new(-distance, seen * distance));
+                    let emission = seen_from.at(1.5)
+                        + to_scene.apply(Event::new(-distance, turn * seen * distance));
                     let rest = Lorentz::boost(object).apply(emission - thing.origin);
                     let found = ray.origin + ray.direction * (ray.stretch * distance);
                     // Each boost magnifies by at most 14.2, and so do the roundings of its coordinates.
@@ -212,7 +213,8 @@ mod tests {
         for rapidity in [0.0, 1e-9, 1.0, 20.0, 350.0] {
             let velocity = Velocity::from_rapidity(rapidity, DVec3::NEG_Z).unwrap();
             let observer = line(0.0, DVec3::ZERO, velocity);
-            let sight = Sight::new(&observer, &line(0.0, DVec3::ZERO, Velocity::ZERO), 0.0);
+            let thing = line(0.0, DVec3::ZERO, Velocity::ZERO);
+            let sight = Sight::new(&observer.moment(0.0), &thing);
             for seen in directions() {
                 let ray = sight.ray(seen);
                 assert!(ray.stretch > 0.0 && ray.stretch.is_finite());
@@ -236,10 +238,10 @@ mod tests {
     fn normals_at_rest_are_those_of_the_surface_that_is_seen() {
         let velocity = Velocity::from_beta(0.8, DVec3::new(0.2, -1.0, 0.4)).unwrap();
         let other = Velocity::from_beta(0.6, DVec3::X).unwrap();
+        let turn = DQuat::from_rotation_x(1.3);
         let sight = Sight::new(
-            &line(0.0, DVec3::ZERO, velocity),
+            &line(0.0, DVec3::ZERO, velocity).moment(0.0).turned(turn),
             &line(0.0, DVec3::Y, other),
-            0.0,
         );
         for seen in directions() {
             let (u, v) = seen.any_orthonormal_pair();

@@ -32,7 +32,7 @@ use thiserror::Error;
 
 use crate::material::Model;
 use crate::shape::{Appearance, Color, Shape};
-use crate::spacetime::{Event, Velocity, WorldLine};
+use crate::spacetime::{Event, Moment, Velocity, WorldLine};
 use forms::{FromObject, Steps, VelocityForm};
 
 /// Most evenly spaced steps one scene may have: a guard against slips of the pen.
@@ -253,6 +253,15 @@ impl Scene {
     pub fn steps(&self) -> &[f64] {
         &self.steps
     }
+
+    /// What the observer is at one step: event, velocity and axes.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such step.
+    pub fn moment(&self, step: usize) -> Moment {
+        self.observer.moment(self.steps[step])
+    }
 }
 
 /// `count` evenly spaced proper times, the first `from`, the last `to`; `from` alone if `count` is 1.
@@ -279,12 +288,13 @@ pub fn even_steps(from: f64, to: f64, count: usize) -> Result<Vec<f64>, InvalidS
 }
 
 impl Observer {
-    /// The observer's worldline; proper time 0 is the observation event.
-    pub fn world_line(&self) -> WorldLine {
-        WorldLine {
+    /// What the observer is at `proper_time` after the observation event.
+    pub fn moment(&self, proper_time: f64) -> Moment {
+        let line = WorldLine {
             origin: Event::new(self.time.get(), self.position.get()),
             velocity: self.velocity,
-        }
+        };
+        line.moment(proper_time)
     }
 }
 

@@ -60,6 +60,15 @@ impl Lorentz {
         }
     }
 
+    /// This transformation, after which `rotation` turns the coordinates.
+    #[must_use]
+    pub fn turned(&self, rotation: DQuat) -> Self {
+        Self {
+            boost: self.boost,
+            rotation: (rotation * self.rotation).normalize(),
+        }
+    }
+
     /// The transformation back.
     #[must_use]
     pub fn inverse(&self) -> Self {

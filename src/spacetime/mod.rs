@@ -1,4 +1,4 @@
-//! Special relativity without objects or light: velocities, events, frames, worldlines.
+//! Special relativity without objects or light: velocities, events, frames, worldlines, moments.
 //!
 //! Conventions: c = 1; the Minkowski interval is `-t^2 + x^2 + y^2 + z^2`; transformations are
 //! passive, they turn the coordinates of one frame into those of another.
@@ -6,11 +6,13 @@
 mod event;
 pub(crate) mod exact;
 mod lorentz;
+mod moment;
 mod velocity;
 mod world_line;
 
 pub use event::Event;
 pub use lorentz::Lorentz;
+pub use moment::Moment;
 pub use velocity::{MAX_RAPIDITY, Velocity, VelocityError};
 pub use world_line::WorldLine;
 

@@ -60,17 +60,15 @@ pub(super) fn measure(stage: &Stage, wanted: Wanted, triangles: usize, samples: 
         },
         ..wanted
     };
-    let scene = stage.scene();
-    let observer = scene.observer().world_line();
     let mut worst = Measured::default();
-    for (step, &proper_time) in scene.steps().iter().enumerate() {
+    for step in 0..stage.scene().steps().len() {
         let owners = stage
             .objects()
             .flat_map(|(object, parts)| parts.iter().map(move |_| object));
         let photosurfaces = stage.photosurfaces(step, wanted);
         let photosurfaces = photosurfaces.expect("a step of the scene");
         for (photosurface, object) in photosurfaces.zip(owners) {
-            let view = View::new(&observer, &object.world_line(), proper_time);
+            let view = stage.view(object, step);
             let surface = TrueSurface::of(object);
             let here = photosurface.facts.triangles;
             let places = (samples as f64 * here as f64 / triangles as f64).ceil() as usize;

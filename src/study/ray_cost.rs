@@ -200,10 +200,10 @@ impl Studio<'_> {
         places: impl Fn(usize, usize) -> P + Sync,
     ) -> Light {
         let scene = self.stage.scene();
-        let line = scene.observer().world_line();
-        let steps = scene.steps().iter().zip(self.cameras).enumerate();
-        let light = steps.flat_map(|(step, (&proper_time, camera))| {
-            let viewpoint = Viewpoint::Observer(&line, proper_time);
+        let steps = (0..scene.steps().len()).zip(self.cameras);
+        let light = steps.flat_map(|(step, camera)| {
+            let moment = scene.moment(step);
+            let viewpoint = Viewpoint::Observer(&moment);
             let options = PictureOptions::default();
             let places = |pixel| places(step, pixel);
             let light = self.scenery.light(camera, viewpoint, options, places);

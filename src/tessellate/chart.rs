@@ -280,9 +280,8 @@ mod tests {
             velocity,
         };
         let view = View::new(
-            &world_line(Velocity::from_rapidity(1.0, DVec3::X).unwrap()),
+            &world_line(Velocity::from_rapidity(1.0, DVec3::X).unwrap()).moment(0.0),
             &world_line(Velocity::default()),
-            0.0,
         );
         let allowance = Allowance::Angle {
             view,

@@ -27,7 +27,7 @@ fn main() {
         origin: Event::default(),
         velocity: Velocity::ZERO,
     };
-    let view = View::new(&observer, &object, 0.0);
+    let view = View::new(&observer.moment(0.0), &object);
 
     println!("    points   copy ns   map ns   copy / map   one by one ns");
     for count in [1_000, 10_000, 100_000, 1_000_000, 10_000_000] {

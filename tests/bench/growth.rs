@@ -138,12 +138,12 @@ fn picture(stage: &Stage) -> Duration {
             vertical_fov_deg: 60.0,
         };
         let camera = Camera::new(size, projection, DVec3::NEG_Z).expect("a fair camera");
-        let line = stage.scene().observer().world_line();
+        let moment = stage.scene().moment(0);
         let options = PictureOptions {
             samples: 1,
             ..PictureOptions::default()
         };
-        scenery.picture(&camera, Viewpoint::Observer(&line, 0.0), options, &|| ())
+        scenery.picture(&camera, Viewpoint::Observer(&moment), options, &|| ())
     })
 }
 

@@ -90,8 +90,8 @@ impl Sight {
 
     fn take(&self, samples: u32) {
         let scene = self.stage.scene();
-        let observer = scene.observer().world_line();
-        let viewpoint = Viewpoint::Observer(&observer, scene.steps()[0]);
+        let moment = scene.moment(0);
+        let viewpoint = Viewpoint::Observer(&moment);
         let options = PictureOptions {
             samples,
             ..PictureOptions::default()

@@ -25,14 +25,14 @@ class ManyPoints:
     """What one observation shows of one object: `View` of `oracle`, for arrays of points."""
 
     def __init__(self, view):
-        observer, source = view.observer, view.source
-        self._event = numpy.array([long_double(x) for x in observer.event])
+        moment, source = view.moment, view.source
+        self._event = numpy.array([long_double(x) for x in moment.event])
         self._u = numpy.array([long_double(x) for x in source.u])
         self._origin = numpy.array([long_double(x) for x in [0, *source.position]])
         self._placing = matrix(source.rotation) * numpy.array([long_double(s) for s in source.scale])
         self._unplacing = matrix((mp.matrix(placing_rows(source)) ** -1).tolist())
-        self._scene_to_observer = matrix(boost(observer.u))
-        self._observer_to_scene = matrix(boost_back(observer.u))
+        self._scene_to_observer = matrix(moment.scene_to_observer())
+        self._observer_to_scene = matrix(moment.observer_to_scene())
         self._rest_to_scene = matrix(boost_back(source.u))
         self._scene_to_rest = matrix(boost(source.u))
 

@@ -98,22 +98,45 @@ def rotation_matrix(quaternion):
 
 
 @dataclass
-class Observer:
-    """An observation: an event in the scene frame, and the observer's four-velocity there."""
+class Moment:
+    """What an observer is at one instant: its event and its four-velocity in the scene frame, and the
+    matrix that turns coordinates along the axes of a pure boost into those along its own."""
 
     event: list
     u: list
+    turn: list
 
     @classmethod
     def of_scene(cls, scene):
         spec = scene.get("observer", {})
         place = [mpf(x) for x in spec.get("position", [0, 0, 0])]
-        return cls([mpf(spec.get("time", 0)), *place], four_velocity(spec.get("velocity")))
+        u = four_velocity(spec.get("velocity"))
+        return cls([mpf(spec.get("time", 0)), *place], u, IDENTITY)
 
     def after(self, proper_time):
         """The same observer, coasting, after that much proper time."""
         event = [e + mpf(proper_time) * u for e, u in zip(self.event, self.u, strict=True)]
-        return Observer(event, self.u)
+        return Moment(event, self.u, self.turn)
+
+    def turned(self, quaternion):
+        """The same observer with its axes turned by a rotation that is given in them."""
+        axes = zip(*rotation_matrix(quaternion), strict=True)
+        columns = list(zip(*self.turn, strict=True))
+        return Moment(self.event, self.u, [[dot(axis, c) for c in columns] for axis in axes])
+
+    def scene_to_observer(self):
+        """The matrix of the boost and the turn after it."""
+        time, *space = boost(self.u)
+        columns = list(zip(*space, strict=True))
+        return [time, *([dot(row, c) for c in columns] for row in self.turn)]
+
+    def observer_to_scene(self):
+        """The matrix back: time and space change sign where they mix."""
+        columns = zip(*self.scene_to_observer(), strict=True)
+        return [
+            [-x if (row == 0) != (column == 0) else x for column, x in enumerate(entries)]
+            for row, entries in enumerate(columns)
+        ]
 
 
 @dataclass
@@ -147,10 +170,10 @@ class Source:
 class View:
     """What one observation shows of one object."""
 
-    def __init__(self, observer, source):
-        self.observer = observer
+    def __init__(self, moment, source):
+        self.moment = moment
         self.source = source
-        self._to_observer = boost(observer.u)
+        self._to_observer = moment.scene_to_observer()
         self._to_scene = boost_back(source.u)
 
     def emission(self, offset):
@@ -160,7 +183,7 @@ class View:
         at_zero = [at_zero[0], *(x + p for x, p in zip(at_zero[1:], self.source.position, strict=True))]
         # The worldline is at_zero + s u. It meets the light cone where (at_zero + s u - event)^2 = 0,
         # a quadratic equation in s with u^2 = -1; the smaller root is the past one.
-        separation = [a - e for a, e in zip(at_zero, self.observer.event, strict=True)]
+        separation = [a - e for a, e in zip(at_zero, self.moment.event, strict=True)]
         half = interval(separation, self.source.u)
         proper_time = half - mp.sqrt(half**2 + interval(separation, separation))
         event = [a + proper_time * u for a, u in zip(at_zero, self.source.u, strict=True)]
@@ -170,7 +193,7 @@ class View:
         """The emission event [t, x, y, z] in the observer's frame, the observation at its origin."""
         event, _ = self.emission(offset)
         return apply(
-            self._to_observer, [x - e for x, e in zip(event, self.observer.event, strict=True)]
+            self._to_observer, [x - e for x, e in zip(event, self.moment.event, strict=True)]
         )
 
     def seen(self, offset):
@@ -178,8 +201,8 @@ class View:
 
     def doppler(self, offset):
         """Frequency seen over frequency emitted: proper time elapsed there per proper time here."""
-        _, earlier = View(self.observer.after(-DIFFERENCE), self.source).emission(offset)
-        _, later = View(self.observer.after(DIFFERENCE), self.source).emission(offset)
+        _, earlier = View(self.moment.after(-DIFFERENCE), self.source).emission(offset)
+        _, later = View(self.moment.after(DIFFERENCE), self.source).emission(offset)
         return (later - earlier) / (2 * DIFFERENCE)
 
     def normal(self, offset, normal):
@@ -197,7 +220,7 @@ class View:
         return [(a - b) / (2 * DIFFERENCE) for a, b in zip(ahead, behind, strict=True)]
 
     def relative_gamma(self):
-        return -interval(self.observer.u, self.source.u)
+        return -interval(self.moment.u, self.source.u)
 
     def rounding_scale(self, offset):
         """The length that f64 rounding errors of any honest evaluation are relative to.
@@ -206,5 +229,5 @@ class View:
         origin (in time and space); adding the offset gives the offset from the observer; and mapping
         that makes terms of the size of the relative gamma times it.
         """
-        separation = norm(self.observer.event) + norm(self.source.position)
+        separation = norm(self.moment.event) + norm(self.source.position)
         return self.relative_gamma() * (norm(offset) + 2 * self.source.u[0] * separation)

@@ -30,7 +30,7 @@ from mpmath import mpf
 import glb
 import ply
 from many import ManyPoints
-from oracle import Observer, Source, View
+from oracle import Moment, Source, View
 from scenes import CUBE, write_airplane
 from surfaces import Cylinder, Sphere, Torus, Triangles, box, random_on_triangles
 from test_validator import assert_valid
@@ -165,7 +165,7 @@ def view_at(scene, step):
     """The oracle's view of the only object."""
     (spec,) = scene["objects"]
     proper_time = scene.get("steps", [0])[step]
-    return View(Observer.of_scene(scene).after(proper_time), Source.of_object(spec))
+    return View(Moment.of_scene(scene).after(proper_time), Source.of_object(spec))
 
 
 def measure(scene, surface, path, unit, step=0):

@@ -4,7 +4,7 @@ import numpy
 import pytest
 
 import glb
-from oracle import Observer, Source, View
+from oracle import Moment, Source, View
 from scenes import CUBE, SEVERAL, SPHERE, TORUS, write_obj
 
 SCENES = {"sphere": SPHERE, "cube": CUBE, "torus": TORUS, "several": SEVERAL}
@@ -93,7 +93,7 @@ def test_facts_about_each_step(export):
         assert (facts["vertices"], facts["triangles"]) == (len(node.positions), len(node.triangles))
         (spec,) = [spec for spec in SEVERAL["objects"] if spec["name"] == facts["object"]]
         assert facts["proper_time"] == SEVERAL["steps"][facts["step"]]
-        gamma = View(Observer.of_scene(SEVERAL), Source.of_object(spec)).relative_gamma()
+        gamma = View(Moment.of_scene(SEVERAL), Source.of_object(spec)).relative_gamma()
         # Two speeds given to half an ulp, a composition and a cosh.
         assert abs(facts["relative_gamma"] / gamma - 1) < 2**-49
 

@@ -7,7 +7,7 @@ Their objects move with beta past an observer at rest in the scene frame, unless
 import pytest
 from mpmath import mp, mpf, sqrt
 
-from oracle import Observer, Source, View, four_velocity, norm, rotation_matrix
+from oracle import Moment, Source, View, four_velocity, norm, rotation_matrix
 
 QUOTED_DIGITS = mpf(10) ** -30
 
@@ -15,7 +15,7 @@ QUOTED_DIGITS = mpf(10) ** -30
 def passing(velocity, position=(0, 0, 0), time=0):
     """An observer at the scene's origin, and an object that moves past."""
     source = Source.of_object({"velocity": velocity, "position": list(position)})
-    return View(Observer.of_scene({"observer": {"time": time}}), source)
+    return View(Moment.of_scene({"observer": {"time": time}}), source)
 
 
 def along_x(beta):
@@ -121,7 +121,7 @@ def test_time_steps_of_an_observer_who_moves(proper_time, seen_x):
     """The same flyby with the observer moving and the object at rest: the steps are proper times."""
     scene = {"observer": {"velocity": {"beta": mpf("0.95"), "direction": [-1, 0, 0]}}}
     at_rest = Source.of_object({"position": [0, 3, 0]})
-    seen = View(Observer.of_scene(scene).after(proper_time), at_rest).seen(vector(0, 0, 0))
+    seen = View(Moment.of_scene(scene).after(proper_time), at_rest).seen(vector(0, 0, 0))
     assert abs(seen[0] - mpf(seen_x)) < mpf(10) ** -13  # quoted with 17 digits
     assert agrees(seen[1:], [3, 0])
 
@@ -146,7 +146,7 @@ def test_doppler_factors_at_angles_seen(beta, cosine, doppler):
 
 def test_the_relative_velocity_of_two_that_move():
     """0.6 along x seen from 0.8 along y: gamma is 1.25 * 5/3 and no more."""
-    observer = Observer.of_scene({"observer": {"velocity": vector(0, "0.8", 0)}})
+    observer = Moment.of_scene({"observer": {"velocity": vector(0, "0.8", 0)}})
     view = View(observer, Source.of_object({"velocity": vector("0.6", 0, 0)}))
     assert agrees(view.relative_gamma(), mpf(25) / 12)
 
@@ -162,6 +162,22 @@ def test_the_ways_to_write_a_speed_agree():
     as_vector = four_velocity([mpf("0.6") * x / 3 for x in direction])
     for way in ways:
         assert agrees(four_velocity({**way, "direction": direction}), as_vector)
+
+
+def test_axes_turned_by_a_quarter():
+    """About z: what was seen along y is then seen along x."""
+    half = sqrt(mpf(1) / 2)
+    moment = Moment.of_scene({"observer": {"velocity": {"beta": mpf("0.6"), "direction": [1, 2, -2]}}})
+    source = Source.of_object({"velocity": along_x("0.8"), "position": [0, 3, 1]})
+    x, y, z = View(moment, source).seen(vector(1, 2, 3))
+    turned = moment.turned([0, 0, half, half])
+    assert agrees(View(turned, source).seen(vector(1, 2, 3)), [y, -x, z])
+    twice = turned.turned([0, 0, half, half])
+    assert agrees(View(twice, source).seen(vector(1, 2, 3)), [-x, -y, z])
+    there = turned.scene_to_observer()
+    back = [[sum(a * b for a, b in zip(row, c, strict=True)) for c in zip(*there, strict=True)]
+            for row in turned.observer_to_scene()]
+    assert all(abs(back[i][j] - (i == j)) < QUOTED_DIGITS for i in range(4) for j in range(4))
 
 
 def test_a_quarter_turn():

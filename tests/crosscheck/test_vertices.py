@@ -14,7 +14,7 @@ from mpmath import mpf
 
 import glb
 import ply
-from oracle import Observer, Source, View, norm
+from oracle import Moment, Source, View, norm
 from scenes import CUBE, SPHERE, TORUS, write_airplane, write_obj
 
 F32 = mpf(2) ** -24
@@ -32,7 +32,7 @@ def steps_of(scene):
 def views(scene):
     """The oracle's view of the scene's only object at each step."""
     (spec,) = scene["objects"]
-    observer = Observer.of_scene(scene)
+    observer = Moment.of_scene(scene)
     return [View(observer.after(step), Source.of_object(spec)) for step in steps_of(scene)]
 
 

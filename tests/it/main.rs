@@ -18,6 +18,7 @@ mod physics {
     mod hard_cases;
     mod known_answers;
     mod lorentz;
+    mod moments;
     mod moving_objects;
     mod penrose_terrell;
     mod properties;

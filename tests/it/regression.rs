@@ -318,7 +318,7 @@ fn what_is_seen_infinitely_far_off_is_not_nan() {
         origin: Event::default(),
         velocity: Velocity::from_rapidity(rapidity, direction).unwrap(),
     };
-    let view = View::new(&moving(300.0, DVec3::X), &moving(2.0, DVec3::Y), 0.0);
+    let view = View::new(&moving(300.0, DVec3::X).moment(0.0), &moving(2.0, DVec3::Y));
     assert!(view.relative_velocity().rapidity() > 300.0);
     for far in [DVec3::X, DVec3::ONE, DVec3::new(1.0, -1.0, 0.0)] {
         let seen = view.seen_position(far * 1e300);
@@ -390,7 +390,7 @@ fn infinite_offsets_are_not_made_smaller_for_ever() {
         origin: Event::new(x, DVec3::new(x, -x, 0.0)),
         velocity,
     };
-    let view = View::new(&at(f64::MAX), &at(f64::MIN), 1.0);
+    let view = View::new(&at(f64::MAX).moment(1.0), &at(f64::MIN));
     assert_eq!(view.observer_rest(), DVec3::INFINITY);
     assert_eq!(view.seen_position(DVec3::X), DVec3::INFINITY);
 }

@@ -6,7 +6,7 @@
 //! solutions. At 300 digits nothing has to be arranged so as not to cancel.
 
 use dashu_float::{FBig, round::mode::HalfEven};
-use photosurface::{DVec3, Event, Velocity};
+use photosurface::{DQuat, DVec3, Event, Velocity};
 
 /// A real number with [`PRECISION`] bits.
 pub(crate) type Big = FBig<HalfEven, 2>;
@@ -199,6 +199,35 @@ impl Oracle {
             Event::default(),
             observer_velocity,
         )
+    }
+
+    /// The same observer with its axes turned by `rotation`, which is given in them.
+    ///
+    /// The coordinate along a turned axis is the product with that axis.
+    pub(crate) fn turned(mut self, rotation: DQuat) -> Self {
+        let [x, y, z, w] = rotation.to_array().map(big);
+        let vector = [x, y, z];
+        let square = dot(&vector, &vector) + w.clone() * &w;
+        let axes: [Vector; 3] = DVec3::AXES.map(|axis| {
+            // q a q* / |q|^2 = ((w^2 - v.v) a + 2 (v.a) v + 2 w v x a) / |q|^2
+            let axis = big_vector(axis);
+            let kept = scaled(&axis, &(w.clone() * &w - dot(&vector, &vector)));
+            let along = scaled(&vector, &(big(2.0) * dot(&vector, &axis)));
+            let across = scaled(&cross(&vector, &axis), &(big(2.0) * &w));
+            scaled(
+                &sum(&sum(&kept, &along), &across),
+                &(big(1.0) / square.clone()),
+            )
+        });
+        let turn: Matrix = std::array::from_fn(|row| {
+            std::array::from_fn(|column| match (row, column) {
+                (0, 0) => big(1.0),
+                (0, _) | (_, 0) => big(0.0),
+                (row, column) => axes[row - 1][column - 1].clone(),
+            })
+        });
+        self.scene_to_observer = product(&turn, &self.scene_to_observer);
+        self
     }
 
     /// What is seen of the point at `vertex` in the object's rest frame.

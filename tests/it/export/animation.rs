@@ -56,9 +56,7 @@ fn one_mesh_is_within_the_tolerance_at_every_step() {
                 surface.facts.name
             );
             assert_eq!(surface.mesh.triangles(), steps[0].mesh.triangles());
-            let proper_time = stage.scene().steps()[step];
-            let world_line = stage.scene().observer().world_line();
-            let view = View::new(&world_line, &object.world_line(), proper_time);
+            let view = View::new(&stage.scene().moment(step), &object.world_line());
             let rest = surface
                 .vertex_data
                 .rest_positions
@@ -319,12 +317,8 @@ fn attributes_are_there_when_asked_for() {
             .objects()
             .iter()
             .find(|object| object.name == surface.facts.object);
-        let observer = stage.scene().observer().world_line();
-        let view = View::new(
-            &observer,
-            &object.unwrap().world_line(),
-            surface.facts.proper_time,
-        );
+        let moment = stage.scene().moment(surface.facts.step);
+        let view = View::new(&moment, &object.unwrap().world_line());
         let [x, y, z] = ["_REST_X", "_REST_Y", "_REST_Z"].map(numbers);
         let (factors, times) = (numbers("_DOPPLER"), numbers("_EMISSION_TIME"));
         for (vertex, seen) in surface.mesh.positions().iter().enumerate() {

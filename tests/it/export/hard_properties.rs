@@ -459,7 +459,7 @@ proptest! {
     ) {
         let observer = WorldLine { origin: Event::new(time, event), velocity: velocities.0 };
         let object = WorldLine { origin: Event::default(), velocity: velocities.1 };
-        let view = View::new(&observer, &object, 0.0);
+        let view = View::new(&observer.moment(0.0), &object);
         prop_assert!(!view.observer_rest().is_nan());
         prop_assert!(!view.seen_position(vertex).is_nan());
         // A place beyond f64 is in no direction.

@@ -335,7 +335,7 @@ fn scenes() {
             velocity: velocity(&case["object"]),
         };
         let vertex = vector(&case["vertex"]);
-        let view = View::new(&observer, &object, 0.0);
+        let view = View::new(&observer.moment(0.0), &object);
         let found = view.seen_position(vertex);
 
         let to_rest = naive::boost(&object.velocity);

@@ -343,7 +343,7 @@ fn a_fast_fleet_is_slow_to_one_of_its_own() {
             velocity: fleet,
         };
         let across = direction.any_orthonormal_vector();
-        let view = View::new(&origin(DVec3::ZERO), &origin(DVec3::ZERO), 2.0);
+        let view = View::new(&origin(DVec3::ZERO).moment(2.0), &origin(DVec3::ZERO));
         for place in [direction, -direction, across] {
             assert_eq!(view.seen_position(place), place);
         }

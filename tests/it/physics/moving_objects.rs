@@ -52,7 +52,7 @@ fn moving_objects_are_seen_where_their_worldlines_meet_the_light_cone() {
                     origin: event,
                     velocity: observer_velocity,
                 };
-                let view = View::new(&observer, &object, 0.0);
+                let view = View::new(&observer.moment(0.0), &object);
                 let oracle =
                     Oracle::new(object_position, &object_velocity, event, &observer_velocity);
 
@@ -148,7 +148,10 @@ fn an_observer_beside_a_fast_object_keeps_its_place() {
                 origin: Event::default(),
                 velocity,
             };
-            let view = View::new(&from_origin(observer), &from_origin(object), proper_time);
+            let view = View::new(
+                &from_origin(observer).moment(proper_time),
+                &from_origin(object),
+            );
             let relative = view.relative_velocity();
             let error = oracle::vector_error(view.observer_rest(), &exact);
             let (swing, rotation_swing) = composition_swings(&object, &observer);

@@ -59,8 +59,8 @@ fn by_meshes(stage: &Stage, camera: &Camera, wanted: Wanted) -> (Picture, f64) {
 
 fn take(stage: &Stage, scenery: &Scenery, camera: &Camera) -> Picture {
     assert!(scenery.textures().missing().is_empty());
-    let observer = stage.scene().observer().world_line();
-    let viewpoint = Viewpoint::Observer(&observer, stage.scene().steps()[0]);
+    let moment = stage.scene().moment(0);
+    let viewpoint = Viewpoint::Observer(&moment);
     scenery.picture(camera, viewpoint, BARE, &|| ())
 }
 

@@ -54,15 +54,15 @@ fn take(case: &Case, stage: Stage) {
         true => stage.within_budget(wanted, case.budget).0,
         false => stage,
     };
-    let line = stage.scene().observer().world_line();
     let at_rest = match by_mesh {
         true => None,
         false => Some(at_rest(&stage)),
     };
-    for (step, &proper_time) in stage.scene().steps().iter().enumerate() {
+    for step in 0..stage.scene().steps().len() {
+        let moment = stage.scene().moment(step);
         let viewpoint = match from {
             Some(place) => Viewpoint::Outside(place.into()),
-            None => Viewpoint::Observer(&line, proper_time),
+            None => Viewpoint::Observer(&moment),
         };
         let seen;
         let scenery = match &at_rest {
