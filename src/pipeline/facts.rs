@@ -57,13 +57,13 @@ pub struct SceneFacts {
     pub observer_time: f64,
     /// Place of the observation event in the scene frame.
     pub observer_position: [f64; 3],
-    /// Direction of the observer's motion in the scene frame.
+    /// Direction of the observer's motion in the scene frame, at the observation event.
     pub observer_direction: [f64; 3],
-    /// The observer's speed in the scene frame.
+    /// The observer's speed in the scene frame, at the observation event.
     pub observer_beta: f64,
-    /// The observer's Lorentz factor in the scene frame.
+    /// The observer's Lorentz factor in the scene frame, at the observation event.
     pub observer_gamma: f64,
-    /// The observer's rapidity in the scene frame.
+    /// The observer's rapidity in the scene frame, at the observation event.
     pub observer_rapidity: f64,
     /// Proper times of the steps, from the observation event.
     pub steps: Vec<f64>,
