@@ -3,11 +3,9 @@
 //! Predictions steer, counts hold: aims are loosened until about as much is predicted as there is, and then each object
 //! is granted so many triangles at each step that all together are within the budget, whatever was predicted.
 
+use super::placed::Granted;
 use super::plan::Predicted;
-use super::stage::Placed;
 use super::{Stage, Wanted};
-use crate::material::Part;
-use crate::mesh::Mesh;
 use crate::tessellate::shares;
 
 /// Room that a budget leaves for predictions, which are good to about a half (`tests/it/cli/accuracy.rs`).
@@ -45,15 +43,6 @@ pub struct Prediction {
     /// Not where rounding alone takes more, where the observer touches a surface and the tolerance is an angle, or
     /// where nothing is to be subdivided.
     pub reachable: bool,
-}
-
-/// How many triangles an object may have beyond those of its source.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Granted {
-    /// At each step.
-    steps: Vec<u64>,
-    /// Of one mesh for all steps.
-    together: u64,
 }
 
 impl Stage {
@@ -270,68 +259,4 @@ impl Predicted {
     fn needed(&self) -> f64 {
         self.before + PREDICTION_ROOM * (self.triangles - self.before)
     }
-}
-
-impl Placed {
-    /// How many more there may be at a step.
-    pub(super) fn granted(&self, step: usize) -> u64 {
-        let granted = self.granted.as_ref();
-        granted.map_or(u64::MAX, |granted| granted.steps[step])
-    }
-
-    /// How many more there may be where all steps share one mesh.
-    pub(super) fn granted_together(&self) -> u64 {
-        self.granted
-            .as_ref()
-            .map_or(u64::MAX, |granted| granted.together)
-    }
-
-    /// A sample of about `most` triangles where there are more, and for each part of how many each is a sample.
-    fn sketch(&self, most: usize) -> Option<(Self, Vec<f64>)> {
-        let count = |part: &Part| part.mesh().triangles().len();
-        let all: usize = self.parts.iter().map(|(_, part)| count(part)).sum();
-        if all <= most || self.shaped.is_some() {
-            return None;
-        }
-        let share = most as f64 / all as f64;
-        let parts = self.parts.iter().map(|(name, part)| {
-            let triangles = part.mesh().triangles();
-            let sampled = (triangles.len() as f64 * share).ceil() as usize;
-            let weight = triangles.len() as f64 / sampled as f64;
-            (
-                (name.clone(), part.with_mesh(sample(part.mesh(), sampled))),
-                weight,
-            )
-        });
-        let (parts, weights) = parts.unzip();
-        let sketch = Self {
-            parts,
-            shaped: None,
-            loosening: self.loosening,
-            source_triangles: self.source_triangles,
-            granted: None,
-        };
-        Some((sketch, weights))
-    }
-}
-
-/// So many triangles of a mesh, spread by multiples of the golden ratio: in step with no pattern of rows.
-fn sample(mesh: &Mesh, triangles: usize) -> Mesh {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let all = mesh.triangles();
-    let chosen = (0..triangles).map(|index| {
-        let place = (index as f64 * GOLDEN).fract() * all.len() as f64;
-        all[(place as usize).min(all.len() - 1)]
-    });
-    let corners = chosen
-        .flatten()
-        .map(|corner| mesh.positions()[corner as usize]);
-    let positions: Vec<_> = corners.collect();
-    let indices = (0..positions.len() as u32).step_by(3);
-    let sampled = Mesh::new(
-        positions,
-        indices.map(|i| [i, i + 1, i + 2]).collect::<Vec<_>>(),
-    );
-    let sampled = sampled.and_then(Mesh::with_flat_normals);
-    sampled.expect("finite positions and indices in range, as in the mesh")
 }

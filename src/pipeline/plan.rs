@@ -9,8 +9,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Wanted;
+use super::placed::Placed;
 use super::seen::Seen;
-use super::stage::Placed;
 use crate::light_cone::{Extremes, View};
 use crate::material::Part;
 use crate::mesh::Mesh;

@@ -2,29 +2,24 @@
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use serde_json::Value;
 
-use super::StageError;
-use super::budget::Granted;
 use super::facts::{Facts, SceneFacts};
 use super::names::{self, UniqueNames, step_label};
+use super::placed::{Placed, Shaped, triangle_count};
 use super::plan::{Plan, Surface, Unrefined};
 use super::seen::VertexData;
+use super::{Photosurface, StageError, Wanted};
 use crate::light_cone::View;
-use crate::material::{Material, Model, Part};
-use crate::mesh::Mesh;
-use crate::scene::{Attributes, MarkerRadius, Object, Scene, Source};
+use crate::material::{Model, Part};
+use crate::scene::{MarkerRadius, Object, Scene};
 use crate::shape::{Appearance, Color, Shape};
 use crate::spacetime::Velocity;
-use crate::tessellate::Precision;
 
 /// The observer's marker in files.
 const MARKER_NAME: &str = "observer";
 const MARKER_RESOLUTION: u32 = 24;
-
-/// A shape of more facets than it may have is tried with so much larger ones, and again.
-const COARSER: f64 = 1.1;
 
 /// A scene with the geometry of its objects, placed in their rest frames: all that photosurfaces need.
 ///
@@ -53,84 +48,6 @@ pub struct Stage {
     pub(super) objects: Vec<Placed>,
     /// What the source of each says of itself.
     pub(super) origins: Vec<Option<Arc<Value>>>,
-}
-
-/// The photosurface of one part of one object at one step.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Photosurface {
-    /// What it is and how it came about.
-    pub facts: Facts,
-    /// Its geometry in the observer's frame, observer at the origin: the vertices of the part at rest, in
-    /// the same order, then those that were added.
-    pub mesh: Mesh,
-    /// The smallest and the largest coordinates of all parts of the object at this step, or at all steps where they
-    /// share one mesh. Files with `f32` have positions relative to the middle of that: parts that share a corner have
-    /// the same numbers there.
-    pub around: (DVec3, DVec3),
-    /// What else was asked for of its vertices.
-    pub vertex_data: VertexData,
-    /// What it is made of.
-    pub material: Option<Arc<Material>>,
-}
-
-impl Photosurface {
-    /// What was asked for of its vertices.
-    pub fn attributes(&self) -> Attributes {
-        Attributes {
-            doppler: self.vertex_data.doppler_factors.is_some(),
-            emission_time: self.vertex_data.emission_times.is_some(),
-            rest_position: self.vertex_data.rest_positions.is_some(),
-        }
-    }
-}
-
-/// What is wanted of photosurfaces beside their shape, and how much may be spent.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wanted {
-    /// What is to be known of every vertex.
-    pub attributes: Attributes,
-    /// Whether meshes are refined until they are within the tolerance; if not, every vertex stays what it is and
-    /// the certificate tells how far off the mesh is.
-    pub subdivide: bool,
-    /// How many digits the file will have.
-    pub precision: Precision,
-}
-
-impl Default for Wanted {
-    /// Meshes within the tolerance, for glTF, and nothing else.
-    fn default() -> Self {
-        Self {
-            attributes: Attributes::default(),
-            subdivide: true,
-            precision: Precision::Single,
-        }
-    }
-}
-
-/// An object's parts in its rest frame.
-#[derive(Clone, Debug)]
-pub(super) struct Placed {
-    /// Each with its name in files.
-    pub(super) parts: Vec<(String, Part)>,
-    /// Where they are those of a shape.
-    pub(super) shaped: Option<Shaped>,
-    /// Aim at this many times the tolerance.
-    pub(super) loosening: f64,
-    /// How many triangles stay, whatever a budget says: those of meshes, or of the coarsest form of a shape.
-    pub(super) source_triangles: u64,
-    /// How many triangles there may be, if there is a limit.
-    pub(super) granted: Option<Granted>,
-}
-
-/// A shape, to be made as fine as its tolerance asks for.
-#[derive(Clone, Debug)]
-pub(super) struct Shaped {
-    pub(super) shape: Shape,
-    pub(super) appearance: Appearance,
-    pub(super) model_to_rest: DAffine3,
-    pub(super) largest_scale: f64,
-    /// Of its facets as they were placed from the curved surface, at rest.
-    pub(super) deviation: f64,
 }
 
 impl Stage {
@@ -342,76 +259,12 @@ impl Stage {
     }
 }
 
-impl Shaped {
-    pub(super) fn of(object: &Object) -> Option<Self> {
-        match &object.source {
-            Source::Shape(shape, appearance) => Some(Self {
-                shape: shape.clone(),
-                appearance: *appearance,
-                model_to_rest: object.model_to_rest(),
-                largest_scale: object.scale.largest(),
-                deviation: shape.deviation() * object.scale.largest(),
-            }),
-            _ => None,
-        }
-    }
-
-    /// Of how many triangles its coarsest form is made; `parts` are those of any.
-    pub(super) fn fewest_triangles(&self, parts: &[(String, Part)]) -> u64 {
-        let coarsest = self.shape.within(f64::INFINITY);
-        if coarsest == self.shape {
-            triangle_count(parts)
-        } else if coarsest.deviation() > 0.0 {
-            coarsest.triangle_count()
-        } else {
-            triangle_count(&self.parts_like(&coarsest, parts))
-        }
-    }
-
-    /// The shape with the coarsest facets that are not farther off than `deviation` at rest, or the finest ones that are
-    /// not more than `most`; the coarsest of all where that are more.
-    pub(super) fn within(&self, deviation: f64, most: u64) -> Shape {
-        let mut shape = self.shape.within(deviation / self.largest_scale);
-        let coarsest = self.shape.within(f64::INFINITY);
-        let mut deviation = shape.deviation();
-        while shape.triangle_count() > most && deviation < coarsest.deviation() {
-            deviation *= COARSER;
-            shape = self.shape.within(deviation);
-        }
-        shape
-    }
-
-    /// The parts of the same shape with another resolution; names and materials are those of `parts`.
-    pub(super) fn parts_like(
-        &self,
-        shape: &Shape,
-        parts: &[(String, Part)],
-    ) -> Vec<(String, Part)> {
-        let model = shape
-            .model(&self.appearance)
-            .expect("coarser than what a shape may have");
-        let made = parts
-            .iter()
-            .zip(model.parts)
-            .map(|((name, part), mut made)| {
-                made.material = part.material.clone();
-                (name.clone(), made.transformed(&self.model_to_rest))
-            });
-        made.collect()
-    }
-}
-
 /// How a part of an object of so many parts would be called.
 fn wanted_name(object: &Object, part: &Part, parts: usize) -> String {
     match parts {
         1 => object.name.clone(),
         _ => format!("{}_{}", object.name, part.name),
     }
-}
-
-pub(super) fn triangle_count(parts: &[(String, Part)]) -> u64 {
-    let triangles = parts.iter().map(|(_, part)| part.mesh().triangles().len());
-    triangles.sum::<usize>() as u64
 }
 
 fn marker(name: &str, radius: MarkerRadius) -> Part {

@@ -25,6 +25,7 @@ mod stroke;
 mod texture;
 mod tree;
 mod turned;
+mod viewpoint;
 
 pub use camera::{Camera, CameraError, MAX_PICTURE_SIDE, PictureSize, Projection};
 #[cfg(feature = "plot")]
@@ -32,6 +33,7 @@ pub(crate) use lettering::FONT;
 pub use lettering::lettering_width;
 pub use picture::Picture;
 pub(crate) use scenery::grid_places;
-pub use scenery::{PictureOptions, Scenery, Viewpoint};
+pub use scenery::{PictureOptions, Scenery};
 pub use stroke::Strokes;
 pub use texture::{MissingTexture, Textures};
+pub use viewpoint::Viewpoint;

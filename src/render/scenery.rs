@@ -13,12 +13,11 @@ use super::picture::{Picture, encoded};
 use super::pixel_shader::PixelShader;
 use super::sphere::Ball;
 use super::turned::Turned;
-use super::{Camera, Strokes, Textures};
+use super::{Camera, Strokes, Textures, Viewpoint};
 use crate::material::{Material, Part};
 use crate::mesh::Mesh;
 use crate::scene::{Object, Source};
 use crate::shape::{Appearance, Color, Shape};
-use crate::spacetime::Moment;
 
 /// How far facets of a round shape are from it, as a part of its size: less than a tenth of a pixel where it fills
 /// a picture 1000 pixels wide.
@@ -76,15 +75,6 @@ pub struct Scenery {
     /// Each with its linear colour.
     ghosts: Vec<(Body, Vec3)>,
     textures: Textures,
-}
-
-/// Where the picture is taken.
-#[derive(Clone, Copy, Debug)]
-pub enum Viewpoint<'a> {
-    /// By the observer, at one moment, in its own axes.
-    Observer(&'a Moment),
-    /// At a place in the frame in which things stand.
-    Outside(DVec3),
 }
 
 /// How a picture is made.
@@ -289,15 +279,6 @@ fn fine_mesh(object: &Object, shape: &Shape, appearance: &Appearance, part: &Par
     let made = made.and_then(|mut model| model.parts.pop());
     let made = made.map(|part| part.transformed(&object.model_to_rest()));
     made.as_ref().unwrap_or(part).mesh().clone()
-}
-
-impl Viewpoint<'_> {
-    pub(super) fn eye(&self) -> DVec3 {
-        match *self {
-            Viewpoint::Observer(..) => DVec3::ZERO,
-            Viewpoint::Outside(place) => place,
-        }
-    }
 }
 
 #[cfg(test)]

@@ -141,6 +141,13 @@ impl Leg {
     }
 }
 
+impl WorldLine {
+    /// The observer at `proper_time`, its axes those of the frame of `origin` under a pure boost.
+    pub fn moment(&self, proper_time: f64) -> Moment {
+        Moment::new(self.origin, Lorentz::boost(self.velocity)).coasted(proper_time)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,6 @@
 //! Where and when an observer is, as a function of its own clock.
 
-use super::{Event, Lorentz, Moment, Velocity};
+use super::{Event, Velocity};
 
 /// The worldline of an observer in uniform motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,11 +15,6 @@ impl WorldLine {
     /// The event at `proper_time` after [`WorldLine::origin`].
     pub fn at(&self, proper_time: f64) -> Event {
         self.origin + self.four_velocity() * proper_time
-    }
-
-    /// The observer at `proper_time`, its axes those of the frame of `origin` under a pure boost.
-    pub fn moment(&self, proper_time: f64) -> Moment {
-        Moment::new(self.origin, Lorentz::boost(self.velocity)).coasted(proper_time)
     }
 
     /// The change of the event with proper time: `(gamma, gamma beta n)`.
