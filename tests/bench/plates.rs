@@ -36,7 +36,7 @@ fn main() {
     println!("     h   e_tol   triangles      N_min   ratio   triangles/s");
     for h in [1.0, 0.1, 0.01, 0.001] {
         for e in [1e-3, 1e-4, 1e-5] {
-            let tolerance = Tolerance::absolute(e * velocity.gamma_beta()).unwrap();
+            let tolerance = Tolerance::absolute(e * velocity.gamma_beta()).expect("a length");
             let sighting = Sighting::new(DVec3::ZERO, velocity, tolerance);
             let stage = sighting.stage(Source::Model(Arc::new(model(&[plate(h)]))));
             let mut times: Vec<Duration> = (0..REPEATS)

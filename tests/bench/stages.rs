@@ -20,7 +20,7 @@ const THREADS: [usize; 2] = [1, 2];
 
 fn sighting(tolerance: f64) -> Sighting {
     let velocity = Velocity::from_beta(0.6, DVec3::NEG_Z).expect("slower than light");
-    let tolerance = Tolerance::absolute(tolerance * velocity.gamma_beta()).unwrap();
+    let tolerance = Tolerance::absolute(tolerance * velocity.gamma_beta()).expect("a length");
     Sighting::new(DVec3::ZERO, velocity, tolerance)
 }
 
