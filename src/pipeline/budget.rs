@@ -11,6 +11,10 @@ use crate::tessellate::shares;
 /// Room that a budget leaves for predictions, which are good to about a half (`tests/it/cli/accuracy.rs`).
 const PREDICTION_ROOM: f64 = 1.2;
 
+/// A tolerance that is advised is so many times looser than the aim: it has to fit by itself, whatever the prediction
+/// misses, while counts hold the aim.
+const ADVISED: f64 = 4.0 / 3.0;
+
 /// Of more triangles than this, all steps together, a prediction looks at as many, evenly spread, but at each step at
 /// as many as [`LEAST_LOOKED_AT`] at least.
 const TRIANGLES_LOOKED_AT: usize = 50_000;
@@ -63,8 +67,8 @@ impl Stage {
     }
 
     /// The same stage with looser aims, so that all its photosurfaces together have at most `most` triangles; and for
-    /// each object how many times looser, 1 where it is left alone and infinity where no aim that was tried is loose
-    /// enough.
+    /// each object how many times looser a tolerance is that fits by itself, 1 where it is left alone and infinity where no
+    /// aim that was tried is loose enough.
     ///
     /// Objects that need less than an equal share of what is left by the others get what they need; the others
     /// share the rest, and within each the largest gaps are closed first. Certificates are still against the
@@ -93,7 +97,8 @@ impl Stage {
         }
         let loosening = self.objects.iter().map(|placed| match placed.loosening {
             MAX_LOOSENING.. => f64::INFINITY,
-            times => times,
+            1.0 => 1.0,
+            times => ADVISED * times,
         });
         let loosening = loosening.collect();
         (self.granting(wanted, most), loosening)
