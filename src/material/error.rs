@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// Why properties do not make a [`Material`].
+/// Why properties do not make a [`Material`](super::Material).
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MaterialError {
