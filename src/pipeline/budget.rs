@@ -179,12 +179,19 @@ impl Stage {
         let mut too_tight = 1.0;
         let mut loosening: f64 = 1.0;
         self.objects[object].loosening = loosening;
+        // Triangles go with the inverse of the tolerance, but for those that are there anyway.
+        let mut factor = (need / share).max(2.0);
         while need > share && loosening < MAX_LOOSENING {
             too_tight = loosening;
-            // Triangles go with the inverse of the tolerance, but for those that are there anyway.
-            loosening = (loosening * (need / share).max(2.0)).min(MAX_LOOSENING);
+            loosening = (loosening * factor).min(MAX_LOOSENING);
             self.objects[object].loosening = loosening;
-            need = needed(self, object);
+            let loosened = needed(self, object);
+            // Where that changes little, tolerances that matter are far away.
+            factor = match loosened > 0.5 * need {
+                true => factor * factor,
+                false => (loosened / share).max(2.0),
+            };
+            need = loosened;
         }
         for _ in 0..MAX_HALVINGS {
             if need > share || need >= USED * share {
