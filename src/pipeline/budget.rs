@@ -23,10 +23,10 @@ const LEAST_LOOKED_AT: usize = 5_000;
 /// Of more steps than this a prediction looks at as many, evenly spread.
 const STEPS_LOOKED_AT: usize = 32;
 
-/// What is there before any refinement may be more than a budget: then no tolerance fits it.
+/// The triangles before any refinement may be more than a budget: then no tolerance fits it.
 const MAX_LOOSENING: f64 = 1e300;
 
-/// A share of the budget is used up to this part at least, if so many steps are enough to come near to it.
+/// A share of the budget beyond the triangles of the source is used up to this part at least, if so many steps suffice.
 const USED: f64 = 0.9;
 const MAX_HALVINGS: usize = 12;
 
@@ -171,7 +171,7 @@ impl Stage {
         self.objects[object].loosening = MAX_LOOSENING;
         let least = needed(self, object);
         if need <= least {
-            // What is there takes all of it, and is kept whatever the budget.
+            // The source takes all of it, and stays whatever the budget.
             self.objects[object].loosening = 1.0;
             return need;
         }
@@ -194,7 +194,7 @@ impl Stage {
             need = loosened;
         }
         for _ in 0..MAX_HALVINGS {
-            if need > share || need >= USED * share {
+            if need > share || need - least >= USED * (share - least) {
                 break;
             }
             // The roots first: the product might overflow.
