@@ -502,7 +502,7 @@ mod tests {
         assert!(made > 1000, "{made}");
     }
 
-    /// A place so far away, or so close, that its square is no number is seen where it is.
+    /// A place so far away, or so close, that its square is not a number is seen where it is.
     #[test]
     fn the_middle_of_the_sky_is_that_of_places_at_any_distance() {
         for distance in [1e-310, 1e-200, 1.0, 1e200, 1e305] {

@@ -16,6 +16,7 @@ mod output;
 mod render;
 mod schema;
 mod studio;
+mod work;
 
 use std::process::ExitCode;
 

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::note::{Note, lines};
+use super::note::Note;
+use super::notes::lines;
 
 /// What there is to know about a model beside the model.
 #[derive(Clone, Debug, PartialEq, Default)]

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::note::{Note, add_note};
+use super::note::Note;
+use super::notes::add_note;
 use crate::material::Material;
 
 /// Materials without the textures that meshes have no coordinates for, each made once and shared.

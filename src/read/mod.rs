@@ -15,6 +15,7 @@ mod model;
 mod names;
 mod normals;
 mod note;
+mod notes;
 mod obj;
 mod picture;
 mod quota;

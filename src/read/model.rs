@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::bytes::Bytes;
 use super::gltf::{is_glb, read_gltf};
-use super::note::unique;
+use super::notes::unique;
 use super::obj::read_obj_bytes;
 use super::uri::Folder;
 use super::{Access, Findings, Reach, ReadError};

@@ -245,7 +245,7 @@ fn divide(things: &mut [u32], bounds: &[Bounds], level: usize) -> usize {
     let middles = Bounds::around(things.iter().map(|&thing| middle(thing)));
     let axis = (middles.high - middles.low).max_position();
     let (start, length) = (middles.low[axis], middles.high[axis] - middles.low[axis]);
-    // What is no number is in the first bin, and nothing beyond the last.
+    // What is not a number is in the first bin, and nothing beyond the last.
     let bin = |thing: u32| {
         let part = (middle(thing)[axis] - start) / length;
         ((part * BINS as f64) as usize).min(BINS - 1)

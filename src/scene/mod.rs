@@ -143,7 +143,7 @@ pub enum InvalidScene {
     /// Too many or too few evenly spaced steps.
     #[error("count is {0}, expected 1 to {MAX_STEPS} steps")]
     StepCount(usize),
-    /// A step that is no number.
+    /// A step that is not a number.
     #[error("step {0} is {1}, expected a finite proper time")]
     Step(usize, f64),
 }

@@ -28,7 +28,7 @@ impl Rotation {
     ///
     /// # Errors
     ///
-    /// A length that differs from 1 by more than a thousandth, or is no number.
+    /// A length that differs from 1 by more than a thousandth, or is not a number.
     pub fn new(quaternion: DQuat) -> Result<Self, RotationError> {
         let length = quaternion.length();
         if (length - 1.0).abs() <= ROUNDING {

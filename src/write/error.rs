@@ -48,7 +48,7 @@ pub enum WriteError {
         /// The limit that it is beyond.
         limit: f64,
     },
-    /// A vertex that is no number: the scene is too large, or too fast, to compute with.
+    /// A vertex that is not a number: the scene is too large, or too fast, to compute with.
     #[error(
         "vertex {vertex} of the photosurface \"{name}\" overflows 64-bit numbers: lengths, times \
          or the rapidity are too large"

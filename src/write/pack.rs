@@ -139,7 +139,7 @@ pub(super) fn bounds(positions: &[DVec3]) -> Option<(DVec3, DVec3, bool)> {
     })
 }
 
-/// The bounds of positions; refuses none, and those that are no numbers or beyond `f32`.
+/// The bounds of positions; refuses none, and those that are not numbers or beyond `f32`.
 fn checked_bounds(name: &str, positions: &[DVec3]) -> Result<(DVec3, DVec3), WriteError> {
     let name = name.to_owned();
     let Some((low, high, fits)) = bounds(positions) else {
@@ -163,7 +163,7 @@ fn checked_bounds(name: &str, positions: &[DVec3]) -> Result<(DVec3, DVec3), Wri
     })
 }
 
-/// Each coordinate by itself: the largest of several would not tell of one that is no number.
+/// Each coordinate by itself: the largest of several would not tell of one that is not a number.
 fn fits_f32(position: DVec3) -> bool {
     let [x, y, z] = position.abs().to_array();
     let limit = f64::from(f32::MAX);
@@ -289,7 +289,7 @@ mod tests {
             "{huge}"
         );
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
-            // One coordinate that is no number, the others 0.
+            // One coordinate that is not a number, the others 0.
             let place = DVec3::select(axis.cmpgt(DVec3::ZERO), DVec3::NAN, DVec3::ZERO);
             let message = Packing::new("a", &[&[DVec3::ZERO, place]], None).unwrap_err();
             assert!(message.to_string().contains("vertex 1"), "{message}");

@@ -115,7 +115,7 @@ fn property<'a>(scalar: &Scalar<'a>) -> &'a str {
 ///
 /// # Errors
 ///
-/// No triangles, or a place that is no number.
+/// No triangles, or a place that is not a number.
 pub(super) fn check_positions(name: &str, mesh: &Mesh) -> Result<(), WriteError> {
     let name = || name.to_owned();
     if mesh.triangles().is_empty() {

@@ -12,7 +12,8 @@ use super::accessor::Expected;
 use super::document::Document;
 use super::nodes::{self, Rounded, Tree};
 use super::primitive::{Shape, Source};
-use crate::read::note::{Note, add_note};
+use crate::read::note::Note;
+use crate::read::notes::add_note;
 use crate::read::{AccessorProblem, NodeProblem, ReadError};
 
 const BIND_MATRIX: Expected = Expected {

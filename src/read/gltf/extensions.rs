@@ -8,7 +8,8 @@ use gltf::json::validation::Checked;
 
 use super::looks::Looks;
 use crate::read::ReadError;
-use crate::read::note::{Note, add_note};
+use crate::read::note::Note;
+use crate::read::notes::add_note;
 
 /// Vertex data in integers, which is read.
 const QUANTIZATION: &str = "KHR_mesh_quantization";

@@ -7,7 +7,8 @@ use gltf::json::{Extras, Root};
 use serde_json::{Map, Value, json};
 
 use super::nodes::default_scene;
-use crate::read::note::{Note, add_note, plural};
+use crate::read::note::{Note, plural};
+use crate::read::notes::add_note;
 
 /// What wrote the file, if that is this program.
 pub(super) fn own_generator(root: &Root) -> Option<&str> {

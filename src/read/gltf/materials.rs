@@ -15,7 +15,8 @@ use crate::material::{
 use crate::read::ReadError;
 use crate::read::error::reason;
 use crate::read::fitted::Fitted;
-use crate::read::note::{Note, add_note};
+use crate::read::note::Note;
+use crate::read::notes::add_note;
 use crate::read::picture;
 use crate::read::uri::{Folder, read_uri};
 

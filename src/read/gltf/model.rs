@@ -20,7 +20,8 @@ use crate::read::bytes::Bytes;
 use crate::read::far::checked;
 use crate::read::names::tell_apart;
 use crate::read::normals::replace_zero_normals;
-use crate::read::note::{Note, add_note, lines, plural, unique};
+use crate::read::note::{Note, plural};
+use crate::read::notes::{add_note, lines, unique};
 use crate::read::uri::Folder;
 use crate::read::{AccessorProblem, Findings, NodeProblem, ReadError};
 

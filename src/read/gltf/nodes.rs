@@ -7,7 +7,8 @@ use gltf::json::{Index, Node, Root};
 
 use super::document::{Document, Placement};
 use super::extensions;
-use crate::read::note::{Note, add_note};
+use crate::read::note::Note;
+use crate::read::notes::add_note;
 use crate::read::{NodeProblem, ReadError};
 
 /// Where the nodes of a file stand.

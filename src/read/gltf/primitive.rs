@@ -15,7 +15,8 @@ use super::accessor::{Expected, Numbers};
 use super::document::Document;
 use crate::mesh::{Mesh, check_triangles, unit_or_zero};
 use crate::read::normals::replace_zero_normals;
-use crate::read::note::{Note, add_note};
+use crate::read::note::Note;
+use crate::read::notes::add_note;
 use crate::read::run::Run;
 use crate::read::{AccessorProblem, ReadError};
 

@@ -12,7 +12,8 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use crate::read::note::{Note, add_note, plural};
+use crate::read::note::{Note, plural};
+use crate::read::notes::add_note;
 use crate::read::text::{as_bytes_of_ascii, lines, shown, split_statement, without_comment};
 use crate::read::{ObjProblem, ReadError};
 

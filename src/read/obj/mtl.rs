@@ -15,7 +15,8 @@ use super::packing::Packing;
 use crate::material::{Material, Texture, position};
 use crate::read::ReadError;
 use crate::read::error::reason;
-use crate::read::note::{Note, add_note};
+use crate::read::note::Note;
+use crate::read::notes::add_note;
 use crate::read::text::{as_bytes_of_ascii, lines, shown, split_statement};
 
 /// Statements that say something which glTF has no place for.

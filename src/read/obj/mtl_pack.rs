@@ -16,7 +16,8 @@ use super::mtl_map::{Map, Pictures};
 use super::packing::Packing;
 use crate::material::{Image, Texture};
 use crate::read::error::reason;
-use crate::read::note::{Note, add_note};
+use crate::read::note::Note;
+use crate::read::notes::add_note;
 use crate::read::uri::Folder;
 
 /// A texture of two maps, and which of them are in it.
