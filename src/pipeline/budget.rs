@@ -28,7 +28,7 @@ const MAX_LOOSENING: f64 = 1e300;
 
 /// A share of the budget beyond the triangles of the source is used up to this part at least, if so many steps suffice.
 const USED: f64 = 0.9;
-const MAX_HALVINGS: usize = 12;
+const MAX_HALVINGS: usize = 8;
 
 /// Where even the loosest aim takes more than there is, so many times as much is spent: the last few per cent would
 /// take a tolerance that says nothing any more.
@@ -174,6 +174,10 @@ impl Stage {
             // The source takes all of it, and stays whatever the budget.
             self.objects[object].loosening = 1.0;
             return need;
+        }
+        if share <= least {
+            // Nothing is left to be granted.
+            return least;
         }
         share = share.max(SPENT_AT_LEAST * least);
         let mut too_tight = 1.0;

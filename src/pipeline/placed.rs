@@ -1,6 +1,7 @@
 //! Objects in their rest frames, and the shapes that some of them are.
 
 use glam::DAffine3;
+use rayon::prelude::*;
 
 use crate::material::Part;
 use crate::mesh::Mesh;
@@ -152,18 +153,22 @@ pub(super) fn triangle_count(parts: &[(String, Part)]) -> u64 {
     triangles.sum::<usize>() as u64
 }
 
-/// So many triangles of a mesh, spread by multiples of the golden ratio: in step with no pattern of rows.
-fn sample(mesh: &Mesh, triangles: usize) -> Mesh {
+/// So many of `all` indices; fewer than all are spread by multiples of the golden ratio: in step with no pattern of rows.
+pub(super) fn spread(all: usize, count: usize) -> impl IndexedParallelIterator<Item = usize> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    (0..count).into_par_iter().map(move |index| match count {
+        _ if count == all => index,
+        _ => (((index as f64 * GOLDEN).fract() * all as f64) as usize).min(all - 1),
+    })
+}
+
+/// So many triangles of a mesh.
+fn sample(mesh: &Mesh, triangles: usize) -> Mesh {
     let all = mesh.triangles();
-    let chosen = (0..triangles).map(|index| {
-        let place = (index as f64 * GOLDEN).fract() * all.len() as f64;
-        all[(place as usize).min(all.len() - 1)]
-    });
-    let corners = chosen
-        .flatten()
-        .map(|corner| mesh.positions()[corner as usize]);
-    let positions: Vec<_> = corners.collect();
+    let corners = spread(all.len(), triangles).flat_map_iter(|index| all[index]);
+    let positions: Vec<_> = corners
+        .map(|corner| mesh.positions()[corner as usize])
+        .collect();
     let indices = (0..positions.len() as u32).step_by(3);
     let sampled = Mesh::new(
         positions,

@@ -52,7 +52,7 @@ const LEAST_OF_ANGLE: f64 = 1e-6;
 /// [`ROOM`]: ten times as much would.
 const LITTLE_ROUNDING: f64 = 1e-4;
 
-/// Round shapes of more facets are not made to predict what refinement will do to them.
+/// Round shapes of more facets are not made to predict what refinement will do to them, nor are more looked at.
 const FACETS_MADE_TO_PREDICT: u64 = 20_000;
 
 /// How one object is seen at one step, and what its tolerance allows.

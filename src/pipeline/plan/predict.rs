@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::{FACETS_MADE_TO_PREDICT, LEAST_FOR_GAP, Plan, shrunk};
 use crate::material::Part;
 use crate::pipeline::Wanted;
+use crate::pipeline::placed::spread;
 use crate::pipeline::seen::Seen;
 use crate::scene::Unit;
 use crate::shape::Shape;
@@ -62,9 +63,15 @@ impl Plan<'_> {
                 reachable: (draft.parts.iter().zip(&draft.seen).map(prove)).all(|c| c.complete),
             };
         }
-        let pieces = facets
-            .par_iter()
-            .map(|(weight, offsets)| weight * predicted_pieces(*offsets, &draft.limits.allowance));
+        let looked_at = match &self.placed.shaped {
+            Some(_) => facets.len().min(FACETS_MADE_TO_PREDICT as usize),
+            None => facets.len(),
+        };
+        let each = facets.len() as f64 / looked_at.max(1) as f64;
+        let pieces = spread(facets.len(), looked_at).map(|index| {
+            let (weight, offsets) = facets[index];
+            weight * each * predicted_pieces(offsets, &draft.limits.allowance)
+        });
         let reachable = match (self.aimed.unit(), self.aimed.number()) {
             (Unit::Degrees, degrees) => {
                 let least = (1.0 - LEAST_FOR_GAP) * degrees.to_radians().sin();
