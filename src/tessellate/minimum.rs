@@ -108,14 +108,24 @@ pub(super) fn pieces_inside(offsets: [DVec3; 3], minimum: f64, allowance: &Allow
     if chart.height == plane.height && chart.power == 0.0 {
         return inside;
     }
-    let area = 0.5 * (b - a).cross(c - a).length();
     let raised = plane.away * (chart.height - plane.height);
     let weight = |raised_offset: DVec3| {
         let offset = raised_offset - raised;
         chart.effective_height(plane.place(offset)) / allowance.between(&[offset])
     };
     let offsets = offsets.map(|offset| offset + raised);
-    FLAT_RATIO * area / AREA_OF_GAP * mean_inverse_square(offsets, 0, &weight)
+    let largest = offsets.iter().fold(0.0, |largest: f64, offset| {
+        largest.max(offset.abs().max_element())
+    });
+    if !(largest > 0.0 && offsets.iter().all(|offset| offset.is_finite())) {
+        return inside;
+    }
+    // As for the minimum: at unit size nothing overflows, and the size goes out.
+    let exponent = exponent(DVec3::splat(largest));
+    let [a, b, c] = offsets.map(|offset| scaled(offset, -exponent));
+    let area = 0.5 * (b - a).cross(c - a).length();
+    let weight = |unit_offset: DVec3| weight(scaled(unit_offset, exponent));
+    FLAT_RATIO * area / AREA_OF_GAP * mean_inverse_square([a, b, c], 0, &weight)
 }
 
 /// The mean of `weight / r^2` over a triangle.
@@ -129,7 +139,8 @@ fn mean_inverse_square([a, b, c]: [DVec3; 3], halvings: u32, weight: &dyn Fn(DVe
     let nearest = middles
         .iter()
         .fold(f64::INFINITY, |r, m| r.min(m.length_squared()));
-    if longest.0 <= SMALL * SMALL * nearest || halvings == MAX_HALVINGS {
+    // Also where a coordinate is not a number, which would be halved for ever.
+    if !(longest.0 > SMALL * SMALL * nearest) || halvings == MAX_HALVINGS {
         let floor = f64::MIN_POSITIVE.sqrt();
         return middles
             .iter()
@@ -299,6 +310,33 @@ mod tests {
             ),
             0.0
         );
+    }
+
+    /// Next to the plane of a triangle squares overflowed as well: halves of what is not a number were halved again.
+    #[test]
+    fn pieces_in_flat_charts_go_with_the_size_of_a_triangle() {
+        let corners = [
+            DVec3::new(-0.9, -0.5, 1e-6),
+            DVec3::new(0.9, -0.5, 1e-6),
+            DVec3::new(0.0, 0.9, 1e-6),
+        ];
+        let pieces = |scale: f64| {
+            let corners = corners.map(|corner| corner * scale);
+            pieces_inside(corners, 0.0, &Allowance::Everywhere(1e-3 * scale))
+        };
+        let expected = pieces(1.0);
+        assert!(expected > 10.0, "{expected}");
+        for exponent in [-200, 200] {
+            let found = pieces(2f64.powi(exponent));
+            assert!(
+                (found / expected - 1.0).abs() < 1e-9,
+                "2^{exponent}: {found} {expected}"
+            );
+        }
+        let nowhere = mean_inverse_square([DVec3::NAN, DVec3::X, DVec3::Y], 0, &|_| 1.0);
+        assert!(nowhere.is_nan());
+        // Beyond what any chart holds it ends all the same.
+        pieces(2f64.powi(1010));
     }
 
     #[test]
