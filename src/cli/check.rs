@@ -17,7 +17,8 @@ use super::output::{FileFormat, check_range};
 /// Reads everything that an export would read and prints, for every object, its parts, how fast it moves relative to
 /// the observer, at its fastest, how many triangles there are before refinement and about how many its photosurfaces take, both of all
 /// steps together, and whether they will be certified to be within the tolerance.
-/// Makes and writes nothing. Exit status: 0 where that of the export will be 0, 1 where it will be 1 (not certified), or
+/// Makes and writes nothing. It predicts exports without --animate=morph, which has the triangles of all steps in one mesh
+/// and rounds them together. Exit status: 0 where that of the export will be 0, 1 where it will be 1 (not certified), or
 /// where the steps do not fit into one file but may into several (--split), 2 an error, 130 interrupted.
 #[derive(Debug, clap::Args)]
 pub(super) struct CheckArgs {

@@ -5,6 +5,7 @@ Doppler factor over the body at rest.
 """
 
 import math
+from pathlib import Path
 
 import numpy
 import pytest
@@ -63,6 +64,22 @@ def test_no_triangle_comes_twice_or_has_no_inside(shape, export):
     corners = numpy.sort(seen.faces, axis=1)
     assert (numpy.diff(corners, axis=1) > 0).all()
     assert len(numpy.unique(corners, axis=0)) == len(corners)
+
+
+@pytest.mark.parametrize("to", ["six.glb", "six.gltf", "six.ply"])
+@pytest.mark.parametrize("place", ["3,0.4,0.5", "1000.3,0.4,0.5"])
+def test_parts_that_close_a_body_close_its_photosurface(place, to, export):
+    """trimesh's own sum of its parts is watertight, with corners welded where all their bits are equal and nowhere else."""
+    six_sides = Path(__file__).parents[2] / "fixtures/meshes/six_sides.obj"
+    path = export(six_sides, "--beta", "0.9", "--observer", place, to=to)
+    loaded = trimesh.load(path, process=False)
+    parts = loaded.dump() if isinstance(loaded, trimesh.Scene) else [loaded]
+    assert len(parts) == (1 if to.endswith(".ply") else 6)
+    assert not any(part.is_watertight for part in parts if len(parts) > 1)
+    whole = trimesh.util.concatenate(parts)
+    seen = solid(whole.vertices, whole.faces)
+    assert seen.is_watertight and seen.is_winding_consistent
+    assert seen.volume > 0 and seen.euler_number == 2
 
 
 def test_euler_numbers(export):
