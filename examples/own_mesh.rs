@@ -5,8 +5,8 @@
 //!     cargo run --release --example own_mesh
 
 use photosurface::{
-    DVec3, Export, Mesh, Model, Object, Observer, Part, Scene, Source, Stage, Velocity, Wanted,
-    write_glb, write_whole,
+    DVec3, Export, Mesh, Model, Object, Observer, Part, PlacedScene, Scene, Source, SurfaceOptions,
+    Velocity, write_glb, write_whole,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -34,11 +34,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ..Model::default()
     };
     let object = Object::new("wall", Source::Model(model.clone().into()));
-    let stage = Stage::new(Scene::new(observer, vec![object])?, vec![model])?;
+    let placed = PlacedScene::new(Scene::new(observer, vec![object])?, vec![model])?;
 
-    let photosurfaces: Vec<_> = stage.photosurfaces(0, Wanted::default())?.collect();
+    let photosurfaces: Vec<_> = placed
+        .photosurfaces(0, SurfaceOptions::default())?
+        .collect();
     let export = Export {
-        scene: &stage.facts(),
+        scene: &placed.facts(),
         marker: None,
         photosurfaces: &photosurfaces,
         playback: None,

@@ -6,7 +6,7 @@
 //!
 //!     cargo run --release --example sphere_flyby
 
-use photosurface::{Scene, Stage, Wanted, load_models};
+use photosurface::{PlacedScene, Scene, SurfaceOptions, load_models};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::from_json(
@@ -17,11 +17,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }"#,
     )?;
     let (models, _) = load_models(&scene, ".".as_ref())?;
-    let stage = Stage::new(scene, models)?;
+    let placed = PlacedScene::new(scene, models)?;
 
     println!("proper time    seen from x =       to x =    length along the motion");
-    for step in 0..stage.scene().steps().len() {
-        for sphere in stage.photosurfaces(step, Wanted::default())? {
+    for step in 0..placed.scene().steps().len() {
+        for sphere in placed.photosurfaces(step, SurfaceOptions::default())? {
             let (low, high) = sphere.mesh.bounds().ok_or("a sphere has vertices")?;
             let time = sphere.facts.proper_time;
             println!(

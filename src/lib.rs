@@ -7,7 +7,7 @@
 //! relativistic image; seen from anywhere else it explains that image.
 //!
 //! The way through the library: read or build a [`Scene`], get the models of its objects with
-//! [`load_models`], put both on a [`Stage`], take its [`Photosurface`]s, write them with [`write_glb`]; [`CostStudy`]
+//! [`load_models`], place both as a [`PlacedScene`], take its [`Photosurface`]s, write them with [`write_glb`]; [`CostStudy`]
 //! tells what accuracy costs. The mathematics alone is in [`Velocity`], [`Lorentz`], [`PhotosurfaceMap`] and [`View`].
 //!
 //! Conventions: c = 1; lengths and times share one unit; right-handed coordinates, y up; angles in radians.
@@ -36,14 +36,15 @@ mod write;
 
 pub use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4, Vec2, Vec4};
 
-pub use jobs::{FileFindings, LoadError, load_models};
+pub use jobs::{Cancelled, FileFindings, LoadError, Progress, load_models};
 pub use light_cone::{PhotosurfaceMap, View};
 pub use material::{
     AlphaMode, Image, Material, MaterialError, Model, Part, PictureError, Texture, Wrap,
 };
 pub use mesh::{Mesh, MeshError};
 pub use pipeline::{
-    Facts, Photosurface, Prediction, SceneFacts, Stage, StageError, VertexData, Wanted, step_label,
+    Facts, Photosurface, PlacedScene, PlacedSceneError, Prediction, SceneFacts, SurfaceOptions,
+    VertexData, step_label,
 };
 pub use read::{
     Access, AccessorProblem, DocumentProblem, Findings, NodeProblem, Note, ObjProblem, ReadError,

@@ -2,7 +2,9 @@
 
 use anyhow::{Context, bail, ensure};
 use clap::Args;
-use photosurface::{Facts, Format, Precision, Prediction, Scene, Stage, Tolerance, Wanted};
+use photosurface::{
+    Facts, Format, PlacedScene, Precision, Prediction, Scene, SurfaceOptions, Tolerance,
+};
 
 use super::args::{Given, whole_number};
 use super::messages::{Verbosity, grouped};
@@ -92,42 +94,42 @@ impl AccuracyArgs {
         self.max_triangles.unwrap_or(MOST_TRIANGLES)
     }
 
-    /// What is wanted of a stage's photosurfaces in a file.
-    pub(super) fn wanted_in(&self, format: Format, scene: &Scene) -> Wanted {
+    /// What is wanted of the photosurfaces of a placed scene in a file.
+    pub(super) fn wanted_in(&self, format: Format, scene: &Scene) -> SurfaceOptions {
         let precision = match format {
             Format::Ply => Precision::Double,
             Format::Glb | Format::Gltf => Precision::Single,
         };
-        Wanted {
+        SurfaceOptions {
             attributes: format.attributes(scene),
             ..self.wanted(precision)
         }
     }
 
-    /// What is wanted of a stage's photosurfaces.
-    pub(super) fn wanted(&self, precision: Precision) -> Wanted {
-        Wanted {
+    /// What is wanted of the photosurfaces of a placed scene.
+    pub(super) fn wanted(&self, precision: Precision) -> SurfaceOptions {
+        SurfaceOptions {
             subdivide: !self.no_subdivide,
             precision,
-            ..Wanted::default()
+            ..SurfaceOptions::default()
         }
     }
 
-    /// The stage with aims that are within the budget, and what it will take; tells what the tolerance needs.
+    /// The placed scene with aims that are within the budget, and what it will take; tells what the tolerance needs.
     pub(super) fn within_budget(
         &self,
-        stage: Stage,
-        wanted: Wanted,
+        placed: PlacedScene,
+        wanted: SurfaceOptions,
         verbosity: Verbosity,
-    ) -> (Stage, Vec<Prediction>) {
-        let predictions = stage.predictions(wanted);
+    ) -> (PlacedScene, Vec<Prediction>) {
+        let predictions = placed.predictions(wanted);
         let needed = total(&predictions);
         verbosity.detail(format_args!("about {needed}"));
-        let (stage, loosening) = stage.within_budget(wanted, self.max_triangles());
+        let (placed, loosening) = placed.within_budget(wanted, self.max_triangles());
         if loosening.iter().all(|&times| times == 1.0) {
-            return (stage, predictions);
+            return (placed, predictions);
         }
-        let scene = stage.scene();
+        let scene = placed.scene();
         let loosened = scene.objects().iter().zip(&loosening);
         let loosened: Vec<_> = loosened
             .filter(|&(_, &times)| times > 1.0)
@@ -136,7 +138,7 @@ impl AccuracyArgs {
                 (&object.name, fitting.to_string())
             })
             .collect();
-        let mut predictions = stage.predictions(wanted);
+        let mut predictions = placed.predictions(wanted);
         for (prediction, times) in predictions.iter_mut().zip(&loosening) {
             prediction.reachable &= *times == 1.0;
         }
@@ -163,7 +165,7 @@ impl AccuracyArgs {
             "the tolerance needs about {needed}, more than --max-triangles {} leaves room for; {advice}",
             grouped(self.max_triangles() as usize),
         ));
-        (stage, predictions)
+        (placed, predictions)
     }
 
     /// Whether, by predictions, [`AccuracyArgs::is_kept`] will say yes.

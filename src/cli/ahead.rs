@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::mpsc::{Receiver, sync_channel};
 
-use photosurface::{Photosurface, Stage, StageError, Wanted, WriteError};
+use photosurface::{Photosurface, PlacedScene, PlacedSceneError, SurfaceOptions, WriteError};
 
 /// Triangles of steps that are made ahead, about, where that is more than one step: enough to keep cores busy, and a
 /// few megabytes, so that many steps take hardly more memory than two.
@@ -21,16 +21,17 @@ const MOST_TO_HAVE_TWO: usize = 500_000;
 ///
 /// Those of `put`; nothing is handed to it after the first.
 pub(super) fn in_order(
-    stage: &Stage,
-    wanted: Wanted,
+    placed: &PlacedScene,
+    wanted: SurfaceOptions,
     steps: Range<usize>,
     mut put: impl FnMut(Photosurface) -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
-    let parts = stage.objects().flat_map(|(_, parts)| parts);
+    let parts = placed.objects().flat_map(|(_, parts)| parts);
     let at_rest = parts.map(|(_, part)| part.mesh().triangles().len()).sum();
     // Until one step is made nobody knows what it comes to.
     let (mut most, mut ahead) = (at_rest, steps_ahead(at_rest).min(1));
-    let mut begun: VecDeque<Receiver<Result<Vec<Photosurface>, StageError>>> = VecDeque::new();
+    let mut begun: VecDeque<Receiver<Result<Vec<Photosurface>, PlacedSceneError>>> =
+        VecDeque::new();
     rayon::in_place_scope(|scope| {
         let mut next = steps.start;
         for step in steps.clone() {
@@ -40,7 +41,7 @@ pub(super) fn in_order(
                 let (made, receiver) = sync_channel(1);
                 scope.spawn(move |_| {
                     // Nobody takes it when writing has failed.
-                    let photosurfaces = stage.photosurfaces(next, wanted);
+                    let photosurfaces = placed.photosurfaces(next, wanted);
                     let _ = made.send(photosurfaces.map(Iterator::collect));
                 });
                 begun.push_back(receiver);
@@ -58,7 +59,7 @@ pub(super) fn in_order(
                         made?.into_iter().try_for_each(&mut put)?;
                     }
                 }
-                None => stage.photosurfaces(step, wanted)?.try_for_each(&mut put)?,
+                None => placed.photosurfaces(step, wanted)?.try_for_each(&mut put)?,
             }
             most = most.max(triangles);
             ahead = steps_ahead(most);

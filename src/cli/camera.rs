@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 use std::num::NonZeroU32;
 
 use anyhow::{Context, anyhow, bail, ensure};
-use photosurface::{Camera, CameraError, Color, DVec3, PictureSize, Projection, Stage, Wanted};
+use photosurface::{
+    Camera, CameraError, Color, DVec3, PictureSize, PlacedScene, Projection, SurfaceOptions,
+};
 
 use super::args::{Given, number, refuse, vector};
 
@@ -320,12 +322,12 @@ fn bounds(places: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
 }
 
 /// Where things are seen at one step, as far as their given vertices say.
-pub(super) fn rough_places(stage: &Stage, step: usize) -> Vec<DVec3> {
-    let wanted = Wanted {
+pub(super) fn rough_places(placed: &PlacedScene, step: usize) -> Vec<DVec3> {
+    let wanted = SurfaceOptions {
         subdivide: false,
-        ..Wanted::default()
+        ..SurfaceOptions::default()
     };
-    stage
+    placed
         .photosurfaces(step, wanted)
         .expect("a step of the scene")
         .flat_map(|surface| surface.mesh.positions().to_vec())

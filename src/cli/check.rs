@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use anyhow::Context;
-use photosurface::{Format, Prediction, Stage};
+use photosurface::{Format, PlacedScene, Prediction};
 
 use super::Status;
 use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, predicted, total};
@@ -48,23 +48,23 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
     let verbosity = Verbosity::new(args.quiet, args.verbose);
     let input = Input::read(&args.input, &args.observer, verbosity)?;
     for (_, scene) in args.detail.levels(&args.accuracy, input.scene)? {
-        let stage = Stage::new(scene, input.models.clone())?;
-        for (name, part) in stage.objects().flat_map(|(_, parts)| parts) {
+        let placed = PlacedScene::new(scene, input.models.clone())?;
+        for (name, part) in placed.objects().flat_map(|(_, parts)| parts) {
             verbosity.detail(format_args!(
                 "{name}: {}, {}",
                 counted(part.mesh().positions().len(), "vertex"),
                 counted(part.mesh().triangles().len(), "triangle")
             ));
         }
-        if let Err(error) = format.least_size(&stage, stage.scene().steps().len()) {
+        if let Err(error) = format.least_size(&placed, placed.scene().steps().len()) {
             verbosity.note(format_args!("{}: {error}", input.place));
             status = Status::NotCertified;
         }
-        let range = check_range(format, &stage);
+        let range = check_range(format, &placed);
         range.with_context(|| input.place.clone())?;
-        let wanted = args.accuracy.wanted_in(format, stage.scene());
-        let (stage, predictions) = args.accuracy.within_budget(stage, wanted, verbosity);
-        print_if_open(|out| table(&stage, &predictions, out))?;
+        let wanted = args.accuracy.wanted_in(format, placed.scene());
+        let (placed, predictions) = args.accuracy.within_budget(placed, wanted, verbosity);
+        print_if_open(|out| table(&placed, &predictions, out))?;
         args.accuracy
             .tell_beyond_budget(predicted(&predictions), verbosity);
         if !args.accuracy.will_be_kept(&predictions) {
@@ -74,8 +74,12 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
     Ok(status)
 }
 
-fn table(stage: &Stage, predictions: &[Prediction], out: &mut dyn Write) -> anyhow::Result<()> {
-    let scene = stage.scene();
+fn table(
+    placed: &PlacedScene,
+    predictions: &[Prediction],
+    out: &mut dyn Write,
+) -> anyhow::Result<()> {
+    let scene = placed.scene();
     let steps = scene.steps().len();
     writeln!(
         out,
@@ -90,8 +94,8 @@ fn table(stage: &Stage, predictions: &[Prediction], out: &mut dyn Write) -> anyh
         "certified"
     )?;
     let mut parts_of_all = 0;
-    for ((object, parts), prediction) in stage.objects().zip(predictions) {
-        let relative = stage.fastest_relative_velocity(object);
+    for ((object, parts), prediction) in placed.objects().zip(predictions) {
+        let relative = placed.fastest_relative_velocity(object);
         writeln!(
             out,
             "{:<20} {:>6} {:>12} {:>13.6e} {:>10.6} {:>12} {:>16} {:>9}",

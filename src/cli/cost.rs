@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail, ensure};
 use photosurface::{
-    Camera, CameraError, CostSettings, CostStudy, DVec3, Made, PictureSize, PlotSize, Projection,
-    RaySettings, Stage, StudyError, Tolerance, write_whole,
+    Camera, CameraError, CostSettings, CostStudy, DVec3, Made, PictureSize, PlacedScene, PlotSize,
+    Projection, RaySettings, StudyError, Tolerance, write_whole,
 };
 
 use super::accuracy::tolerance;
@@ -182,7 +182,7 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
         // It has no title, and plots of two meshes have to be told apart.
         study.scene.title.get_or_insert(input.name.clone());
     }
-    tell(&study, settings.most_triangles, verbosity);
+    tell(&study, settings.max_triangles, verbosity);
 
     if !to_stdout(&output.json) && !to_stdout(&output.csv) {
         print_if_open(|out| tables_of(&study, out))?;
@@ -232,7 +232,7 @@ impl CostArgs {
             tolerances,
             rays,
             repeats: self.study.repeats,
-            most_triangles: self.meshes.max_triangles.unwrap_or(default.most_triangles),
+            max_triangles: self.meshes.max_triangles.unwrap_or(default.max_triangles),
             samples: self.meshes.samples.unwrap_or(default.samples),
             ..default
         })
@@ -261,12 +261,12 @@ impl PictureArgs {
 
     /// With the cameras that `render` has for the observer.
     fn settings(&self, input: &Input) -> anyhow::Result<RaySettings> {
-        let stage = Stage::new(input.scene.clone(), input.models.clone())?;
+        let placed = PlacedScene::new(input.scene.clone(), input.models.clone())?;
         let size = match self.size {
             Some(size) => size,
             None => PictureSize::new(320, 180)?,
         };
-        let places = (0..input.scene.steps().len()).map(|step| rough_places(&stage, step));
+        let places = (0..input.scene.steps().len()).map(|step| rough_places(&placed, step));
         let projection = Projection::Pinhole {
             vertical_fov_deg: match self.fov {
                 Some(fov) => fov,
@@ -326,8 +326,8 @@ impl OutputArgs {
 
 /// Without a speed there is little to study.
 fn tell_of_rest(input: &Input, verbosity: Verbosity) -> anyhow::Result<()> {
-    let stage = Stage::new(input.scene.clone(), input.models.clone())?;
-    let is_at_rest = |object| stage.fastest_relative_velocity(object).rapidity() == 0.0;
+    let placed = PlacedScene::new(input.scene.clone(), input.models.clone())?;
+    let is_at_rest = |object| placed.fastest_relative_velocity(object).rapidity() == 0.0;
     if input.scene.objects().iter().all(is_at_rest) {
         verbosity.note(
             "nothing moves relative to the observer: each photosurface is the shape itself; give a speed, such as \
@@ -396,7 +396,7 @@ mod tests {
             .render_long_help()
             .to_string();
         let default = CostSettings::default();
-        for number in [default.most_triangles, default.samples.get() as u64] {
+        for number in [default.max_triangles, default.samples.get() as u64] {
             assert!(help.contains(&format!("[default: {number}]")), "{help}");
         }
         assert!(

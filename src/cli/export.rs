@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail, ensure};
 use clap::ValueEnum;
-use photosurface::{Attribute, Format, Playback, Scene, Stage, replaced_data};
+use photosurface::{Attribute, Format, PlacedScene, Playback, Scene, replaced_data};
 
 use super::Status;
 use super::accuracy::{AccuracyArgs, DetailArgs, Tally};
@@ -149,20 +149,20 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
             true => std::mem::take(&mut models),
             false => models.clone(),
         };
-        let stage = Stage::new(level.scene, models)?;
+        let placed = PlacedScene::new(level.scene, models)?;
         let of_file = || level.files[0].display().to_string();
         format
-            .least_size(&stage, if output.split { 1 } else { steps })
+            .least_size(&placed, if output.split { 1 } else { steps })
             .with_context(of_file)?;
-        check_range(format, &stage).with_context(of_file)?;
+        check_range(format, &placed).with_context(of_file)?;
         if index == 0 && format != Format::Ply {
-            tell_replaced_names(&stage, &path, args.verbosity);
+            tell_replaced_names(&placed, &path, args.verbosity);
         }
         let clock = clock.clone();
         let certified = export(
             args,
             format,
-            stage,
+            placed,
             playback,
             &level.files,
             level.report.as_deref(),
@@ -183,29 +183,29 @@ struct Level {
     report: Option<PathBuf>,
 }
 
-/// Makes and writes the photosurfaces of a stage; whether all of them are certified.
+/// Makes and writes the photosurfaces of a placed; whether all of them are certified.
 fn export(
     args: &ExportArgs,
     format: Format,
-    stage: Stage,
+    placed: PlacedScene,
     playback: Option<Playback>,
     files: &[PathBuf],
     report: Option<&Path>,
     mut clock: Clock,
 ) -> anyhow::Result<bool> {
     let verbosity = args.verbosity;
-    let wanted = args.accuracy.wanted_in(format, stage.scene());
-    let stage = match wanted.subdivide {
-        true => args.accuracy.within_budget(stage, wanted, verbosity).0,
-        false => stage,
+    let wanted = args.accuracy.wanted_in(format, placed.scene());
+    let placed = match wanted.subdivide {
+        true => args.accuracy.within_budget(placed, wanted, verbosity).0,
+        false => placed,
     };
     clock.stop("predict");
 
-    let parts: usize = stage.objects().map(|(_, parts)| parts.len()).sum();
-    let all = parts * stage.scene().steps().len();
+    let parts: usize = placed.objects().map(|(_, parts)| parts.len()).sum();
+    let all = parts * placed.scene().steps().len();
     let mut work = Work {
         progress: progress_bar(all, "photosurfaces", verbosity),
-        stage: &stage,
+        placed: &placed,
         wanted,
         playback,
         verbosity,
@@ -215,7 +215,7 @@ fn export(
         data_files: vec![],
     };
     let finish = |work: &Work<'_>| match (report, &work.reported) {
-        (Some(path), Some(made)) => write_report(path, &stage, made, &work.clock),
+        (Some(path), Some(made)) => write_report(path, &placed, made, &work.clock),
         _ => Ok(()),
     };
     if args.output.split {
@@ -225,7 +225,7 @@ fn export(
         finish(&work)?;
     } else {
         // Before the mesh appears: where the report fails, nothing is written.
-        let steps = 0..stage.scene().steps().len();
+        let steps = 0..placed.scene().steps().len();
         write_file(&files[0], format, &mut work, steps, finish)?;
     }
     work.progress.finish_and_clear();
@@ -234,7 +234,7 @@ fn export(
         verbosity.detail(format_args!("{name}: {seconds:.3} s"));
     }
     if !is_stdout(&files[0]) {
-        verbosity.result(summary(files, &work.data_files, &stage, &work.tally));
+        verbosity.result(summary(files, &work.data_files, &placed, &work.tally));
     }
     Ok(args.accuracy.is_kept(&work.tally, verbosity))
 }
@@ -362,8 +362,8 @@ fn outputs(levels: &[Level], format: Format) -> impl Iterator<Item = PathBuf> {
 }
 
 /// Tells which names of parts are not in the file as they are in the source.
-fn tell_replaced_names(stage: &Stage, path: &Path, verbosity: Verbosity) {
-    let mut replaced = stage.replaced_names();
+fn tell_replaced_names(placed: &PlacedScene, path: &Path, verbosity: Verbosity) {
+    let mut replaced = placed.replaced_names();
     let Some((wanted, name)) = replaced.next() else {
         return;
     };
@@ -386,12 +386,17 @@ fn shown_name(name: &str) -> String {
     }
 }
 
-fn summary(files: &[PathBuf], data_files: &[PathBuf], stage: &Stage, made: &Tally) -> String {
+fn summary(
+    files: &[PathBuf],
+    data_files: &[PathBuf],
+    placed: &PlacedScene,
+    made: &Tally,
+) -> String {
     let sizes = files.iter().chain(data_files);
     let sizes = sizes.map(|file| fs::metadata(file).map_or(0, |data| data.len()));
     let bytes = sizes.sum();
     let place = from_first_to_last(files);
-    let marker = if stage.marker().is_some() {
+    let marker = if placed.marker().is_some() {
         " and the marker"
     } else {
         ""

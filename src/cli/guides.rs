@@ -1,7 +1,7 @@
 //! What helps to read a picture from outside: wires, ghosts, axes, a scale bar, labels.
 
 use photosurface::{
-    Color, DAffine3, DVec2, DVec3, Mesh, Picture, Scenery, Stage, Strokes, View, Viewpoint,
+    Color, DAffine3, DVec2, DVec3, Mesh, Picture, PlacedScene, Scenery, Strokes, View, Viewpoint,
     lettering_width,
 };
 
@@ -87,12 +87,12 @@ impl GuideArgs {
     /// Adds the ghosts of one step; their edges, to be drawn, and all places of them.
     pub(super) fn ghosts(
         &self,
-        stage: &Stage,
+        placed: &PlacedScene,
         step: usize,
     ) -> (Vec<(Mesh, Strokes<DVec3>)>, Vec<DVec3>) {
         let mut ghosts = Vec::new();
-        for (object, parts) in stage.objects() {
-            let view = stage.view(object, step);
+        for (object, parts) in placed.objects() {
+            let view = placed.view(object, step);
             let bounds = parts.iter().filter_map(|(_, part)| part.mesh().bounds());
             let (low, high) = bounds.fold(
                 (DVec3::INFINITY, DVec3::NEG_INFINITY),

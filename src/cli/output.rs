@@ -9,7 +9,7 @@ use std::time::Duration;
 use anyhow::{bail, ensure};
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
-use photosurface::{Format, Stage, destination, step_label};
+use photosurface::{Format, PlacedScene, destination, step_label};
 
 use super::messages::Verbosity;
 
@@ -120,12 +120,12 @@ pub(super) fn check_destinations(
 }
 
 /// Whether a file of this format can hold what is seen. Where another one could, the error says so.
-pub(super) fn check_range(format: Format, stage: &Stage) -> anyhow::Result<()> {
-    let Err(error) = format.check_range(stage) else {
+pub(super) fn check_range(format: Format, placed: &PlacedScene) -> anyhow::Result<()> {
+    let Err(error) = format.check_range(placed) else {
         return Ok(());
     };
     ensure!(
-        format == Format::Ply || Format::Ply.check_range(stage).is_err(),
+        format == Format::Ply || Format::Ply.check_range(placed).is_err(),
         "{error}; or write a .ply, whose 64-bit numbers hold it"
     );
     Err(error.into())

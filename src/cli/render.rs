@@ -4,7 +4,7 @@ use std::io::{IsTerminal, stdout};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
-use photosurface::{Picture, Precision, Stage, write_whole};
+use photosurface::{Picture, PlacedScene, Precision, write_whole};
 
 use super::Status;
 use super::accuracy::AccuracyArgs;
@@ -87,14 +87,14 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     );
     check_destinations(files.iter().cloned(), &input.files)?;
     let scene = args.accuracy.scene(input.scene);
-    let mut stage = Stage::new(scene, input.models)?;
+    let mut placed = PlacedScene::new(scene, input.models)?;
     let wanted = args.accuracy.wanted(Precision::Double);
     if camera.shows_meshes(method) && wanted.subdivide {
-        stage = args.accuracy.within_budget(stage, wanted, verbosity).0;
+        placed = args.accuracy.within_budget(placed, wanted, verbosity).0;
     }
     let progress = progress_bar(Studio::rows(camera, steps), "rows", verbosity);
     let mut studio = Studio::new(
-        &stage,
+        &placed,
         (camera, guides),
         (method, input.is_mesh),
         &input.textures,
@@ -105,7 +105,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     studio.take_all(|number, picture| write(&files[number], picture))?;
     progress.finish_and_clear();
     studio.tell_of_empty_pictures();
-    tell_of_missing(&input.textures, stage.scene(), verbosity);
+    tell_of_missing(&input.textures, placed.scene(), verbosity);
     if !is_stdout(&files[0]) {
         verbosity.result(format_args!(
             "{}: {}{}",

@@ -6,8 +6,8 @@ use std::time::Instant;
 use anyhow::Context;
 use indicatif::ProgressBar;
 use photosurface::{
-    Camera, Color, DVec3, Picture, PictureOptions, PictureSize, Scenery, Stage, Strokes, Textures,
-    Viewpoint, Wanted,
+    Camera, Color, DVec3, Picture, PictureOptions, PictureSize, PlacedScene, Scenery, Strokes,
+    SurfaceOptions, Textures, Viewpoint,
 };
 
 use super::accuracy::Tally;
@@ -21,13 +21,13 @@ const GAP: u32 = 4;
 /// The colour of wires: it shows on light and on dark surfaces.
 const WIRE: Color = Color([0x2c, 0x3e, 0x50]);
 
-/// A stage and how pictures of it are taken.
+/// A placed scene and how pictures of it are taken.
 pub(super) struct Studio<'a> {
-    stage: &'a Stage,
+    placed: &'a PlacedScene,
     camera: &'a CameraArgs,
     guides: &'a GuideArgs,
     textures: &'a Textures,
-    wanted: Wanted,
+    wanted: SurfaceOptions,
     verbosity: Verbosity,
     progress: ProgressBar,
     /// All objects in their rest frames, for rays.
@@ -44,20 +44,20 @@ pub(super) struct Studio<'a> {
 
 impl<'a> Studio<'a> {
     pub(super) fn new(
-        stage: &'a Stage,
+        placed: &'a PlacedScene,
         (camera, guides): (&'a CameraArgs, &'a GuideArgs),
         (method, is_mesh): (Method, bool),
         textures: &'a Textures,
-        wanted: Wanted,
+        wanted: SurfaceOptions,
         verbosity: Verbosity,
         progress: ProgressBar,
     ) -> Self {
         Self {
             at_rest: match method {
-                Method::Rays => Some(at_rest(stage, textures)),
+                Method::Rays => Some(at_rest(placed, textures)),
                 Method::Mesh => None,
             },
-            stage,
+            placed,
             camera,
             guides,
             textures,
@@ -76,9 +76,9 @@ impl<'a> Studio<'a> {
         &mut self,
         mut finished: impl FnMut(usize, &Picture) -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
-        let steps = self.stage.scene().steps().len();
-        let stage = self.stage;
-        let all_places = (0..steps).map(|step| rough_places(stage, step));
+        let steps = self.placed.scene().steps().len();
+        let placed = self.placed;
+        let all_places = (0..steps).map(|step| rough_places(placed, step));
         let fov = self.camera.observer_fov(all_places, self.is_mesh);
         if self.camera.sheet {
             return finished(0, &self.sheet(fov)?);
@@ -90,7 +90,7 @@ impl<'a> Studio<'a> {
             return Ok(());
         }
         let mut all: Vec<DVec3> = (0..steps).flat_map(|step| self.framed(step)).collect();
-        if let Some((low, high)) = stage.marker().and_then(|part| part.mesh().bounds()) {
+        if let Some((low, high)) = placed.marker().and_then(|part| part.mesh().bounds()) {
             all.extend([low, high]);
         }
         if self.guides.axes {
@@ -108,8 +108,8 @@ impl<'a> Studio<'a> {
 
     /// What a camera outside has to show of one step.
     fn framed(&self, step: usize) -> Vec<DVec3> {
-        let ghosts = self.guides.ghosts(self.stage, step).1;
-        outermost([rough_places(self.stage, step), ghosts].concat())
+        let ghosts = self.guides.ghosts(self.placed, step).1;
+        outermost([rough_places(self.placed, step), ghosts].concat())
     }
 
     /// The size of a sheet of so many steps.
@@ -126,14 +126,14 @@ impl<'a> Studio<'a> {
     fn sheet(&mut self, fov: f64) -> anyhow::Result<Picture> {
         let size = self.camera.size();
         let background = self.camera.background;
-        let steps = self.stage.scene().steps().len();
+        let steps = self.placed.scene().steps().len();
         let sheet_size = Self::sheet_size(self.camera, steps)?;
         let mut sheet = Picture::filled(sheet_size, between(background));
         let framed: Vec<_> = (0..steps).map(|step| self.framed(step)).collect();
         let outside = self.camera.outside(&framed)?;
         for (step, outside) in outside.iter().enumerate() {
             let mut above = self.observer_view(step, fov)?;
-            let proper_time = self.stage.scene().steps()[step];
+            let proper_time = self.placed.scene().steps()[step];
             label(&mut above, &format!("τ = {proper_time}"), background);
             let below = self.outside_view(step..step + 1, outside)?;
             let x = step as u32 * (size.width() + GAP);
@@ -144,9 +144,9 @@ impl<'a> Studio<'a> {
     }
 
     fn observer_view(&mut self, step: usize, fov: f64) -> anyhow::Result<Picture> {
-        let places = rough_places(self.stage, step);
+        let places = rough_places(self.placed, step);
         let camera = self.camera.at_observer(fov, &places)?;
-        let moment = self.stage.scene().moment(step);
+        let moment = self.placed.scene().moment(step);
         let viewpoint = Viewpoint::Observer(&moment);
         let mapped;
         let scenery = match &self.at_rest {
@@ -171,7 +171,7 @@ impl<'a> Studio<'a> {
         let Some(DVec3 { x, y, z }) = self.empty.first() else {
             return;
         };
-        let steps = self.stage.scene().steps().len();
+        let steps = self.placed.scene().steps().len();
         let which = match steps {
             1 => "nothing is to be seen in the picture".to_owned(),
             _ => format!(
@@ -187,13 +187,13 @@ impl<'a> Studio<'a> {
 
     fn outside_view(&mut self, steps: Range<usize>, outside: &Outside) -> anyhow::Result<Picture> {
         let mut scenery = Scenery::with_textures(self.textures);
-        if let Some(marker) = self.stage.marker() {
+        if let Some(marker) = self.placed.marker() {
             scenery.add_plain(marker);
         }
         let mut edges: Vec<Strokes<DVec3>> = Vec::new();
         for step in steps {
             self.add_photosurfaces(&mut scenery, step);
-            for (mesh, ghost_edges) in self.guides.ghosts(self.stage, step).0 {
+            for (mesh, ghost_edges) in self.guides.ghosts(self.placed, step).0 {
                 scenery.add_ghost(mesh, ghost_edges.color);
                 edges.push(ghost_edges);
             }
@@ -207,12 +207,12 @@ impl<'a> Studio<'a> {
     }
 
     fn add_photosurfaces(&mut self, scenery: &mut Scenery, step: usize) {
-        let stage = self.stage;
-        let mut objects = stage.scene().objects().iter().peekable();
+        let placed = self.placed;
+        let mut objects = placed.scene().objects().iter().peekable();
         // On a sheet by meshes each is in two pictures.
         let is_new = step >= self.uncounted;
         self.uncounted = self.uncounted.max(step + 1);
-        let surfaces = stage.photosurfaces(step, self.wanted);
+        let surfaces = placed.photosurfaces(step, self.wanted);
         for surface in surfaces.expect("a step of the scene") {
             // Both are in the order of the scene, in which no two objects have one name.
             while objects
@@ -264,9 +264,9 @@ fn between(background: Color) -> Color {
     Color(background.0.map(|level| level / 2 + 0x40))
 }
 
-fn at_rest(stage: &Stage, textures: &Textures) -> Scenery {
+fn at_rest(placed: &PlacedScene, textures: &Textures) -> Scenery {
     let mut scenery = Scenery::with_textures(textures);
-    for (object, parts) in stage.objects() {
+    for (object, parts) in placed.objects() {
         for (_, part) in parts {
             scenery.add_at_rest(object, part);
         }

@@ -7,8 +7,9 @@ use std::time::Instant;
 
 use indicatif::ProgressBar;
 use photosurface::{
-    Export, Facts, Format, GltfFile, GltfOutput, Playback, Report, Stage, StageTime, Target,
-    Wanted, WriteError, write_ply, write_whole, write_whole_gltf, write_whole_target,
+    Export, Facts, Format, GltfFile, GltfOutput, PlacedScene, Playback, Report, StageTime,
+    SurfaceOptions, Target, WriteError, write_ply, write_whole, write_whole_gltf,
+    write_whole_target,
 };
 
 use super::accuracy::Tally;
@@ -18,8 +19,8 @@ use super::output::is_stdout;
 
 /// Photosurfaces in the making, and what has been made of them so far.
 pub(super) struct Work<'a> {
-    pub(super) stage: &'a Stage,
-    pub(super) wanted: Wanted,
+    pub(super) placed: &'a PlacedScene,
+    pub(super) wanted: SurfaceOptions,
     pub(super) playback: Option<Playback>,
     pub(super) verbosity: Verbosity,
     pub(super) progress: ProgressBar,
@@ -50,9 +51,9 @@ impl Work<'_> {
 
     /// Makes the photosurfaces of some steps and puts each into the file, so that memory does not grow with them.
     fn fill(&mut self, file: &mut GltfFile<'_>, steps: Range<usize>) -> Result<(), WriteError> {
-        let (stage, wanted) = (self.stage, self.wanted);
+        let (placed, wanted) = (self.placed, self.wanted);
         if self.is_morphing() {
-            for part in stage.morphing(wanted) {
+            for part in placed.morphing(wanted) {
                 part.iter().for_each(|step| self.count(&step.facts));
                 self.clock.stop("photosurface");
                 file.add_morphing(&part)?;
@@ -60,7 +61,7 @@ impl Work<'_> {
             }
             return Ok(());
         }
-        in_order(stage, wanted, steps, |photosurface| {
+        in_order(placed, wanted, steps, |photosurface| {
             self.count(&photosurface.facts);
             self.clock.stop("photosurface");
             file.add(&photosurface)?;
@@ -71,8 +72,8 @@ impl Work<'_> {
 
     /// A GLB or both parts of a `.gltf`.
     fn gltf(&mut self, steps: Range<usize>, output: GltfOutput<'_>) -> Result<(), WriteError> {
-        let (scene, attributes) = (self.stage.facts(), self.wanted.attributes);
-        let marker = self.stage.marker();
+        let (scene, attributes) = (self.placed.facts(), self.wanted.attributes);
+        let marker = self.placed.marker();
         let mut file = GltfFile::new(output, &scene, marker, attributes, self.playback)?;
         self.fill(&mut file, steps)?;
         file.finish()?;
@@ -81,25 +82,25 @@ impl Work<'_> {
     }
 
     fn glb(&mut self, steps: Range<usize>, target: Target<'_>) -> Result<(), WriteError> {
-        let parts: usize = self.stage.objects().map(|(_, parts)| parts.len()).sum();
+        let parts: usize = self.placed.objects().map(|(_, parts)| parts.len()).sum();
         let meshes = parts * if self.is_morphing() { 1 } else { steps.len() };
         self.gltf(steps, GltfOutput::glb(target, meshes + 1))
     }
 
     /// All at once: the format says first how many vertices there are.
     fn ply(&mut self, steps: Range<usize>, out: &mut dyn Write) -> Result<(), WriteError> {
-        let (stage, wanted) = (self.stage, self.wanted);
+        let (placed, wanted) = (self.placed, self.wanted);
         let mut photosurfaces = vec![];
         for step in steps {
-            for photosurface in stage.photosurfaces(step, wanted)? {
+            for photosurface in placed.photosurfaces(step, wanted)? {
                 self.count(&photosurface.facts);
                 photosurfaces.push(photosurface);
             }
         }
         self.clock.stop("photosurface");
         let export = Export {
-            scene: &stage.facts(),
-            marker: stage.marker(),
+            scene: &placed.facts(),
+            marker: placed.marker(),
             photosurfaces: &photosurfaces,
             playback: None,
         };
@@ -149,13 +150,13 @@ pub(super) fn write_file(
 
 pub(super) fn write_report(
     path: &Path,
-    stage: &Stage,
+    placed: &PlacedScene,
     made: &[Facts],
     clock: &Clock,
 ) -> Result<(), WriteError> {
     let stages = clock.stages.iter();
     let report = Report {
-        scene: stage.facts(),
+        scene: placed.facts(),
         objects: made.to_vec(),
         stages: stages
             .map(|&(name, seconds)| StageTime { name, seconds })

@@ -3,9 +3,9 @@
 //! Predictions steer, counts hold: aims are loosened until about as much is predicted as there is, and then each object
 //! is granted so many triangles at each step that all together are within the budget, whatever was predicted.
 
-use super::placed::Granted;
+use super::placed_object::Granted;
 use super::plan::Predicted;
-use super::{Stage, Wanted};
+use super::{PlacedScene, SurfaceOptions};
 use crate::tessellate::shares;
 
 /// Room that a budget leaves for predictions, which are good to about a half (`tests/it/cli/accuracy.rs`).
@@ -49,14 +49,14 @@ pub struct Prediction {
     pub reachable: bool,
 }
 
-impl Stage {
+impl PlacedScene {
     /// What each object will take, in the order of the scene.
-    pub fn predictions(&self, wanted: Wanted) -> Vec<Prediction> {
+    pub fn predictions(&self, wanted: SurfaceOptions) -> Vec<Prediction> {
         let objects = 0..self.objects.len();
         objects
             .map(|object| {
                 let predicted = self.predict(object, wanted);
-                let most = self.most_triangles(object);
+                let most = self.max_triangles(object);
                 Prediction {
                     triangles: predicted.triangles.min(most),
                     triangles_in: predicted.before.min(most),
@@ -66,7 +66,7 @@ impl Stage {
             .collect()
     }
 
-    /// The same stage with looser aims, so that all its photosurfaces together have at most `most` triangles; and for
+    /// The same placed scene with looser aims, so that all its photosurfaces together have at most `most` triangles; and for
     /// each object how many times looser a tolerance is that fits by itself, 1 where it is left alone and infinity where no
     /// aim that was tried is loose enough.
     ///
@@ -76,13 +76,13 @@ impl Stage {
     /// round shape as many as the coarsest of its kind has.
     ///
     /// The limit holds exactly, also where a prediction is wrong: what is granted is known beforehand, and refinement
-    /// stops when it is used up. Of [`Stage::morphing`] it counts the one mesh of each part.
+    /// stops when it is used up. Of [`PlacedScene::morphing`] it counts the one mesh of each part.
     #[must_use]
-    pub fn within_budget(mut self, wanted: Wanted, most: u64) -> (Self, Vec<f64>) {
-        for placed in &mut self.objects {
-            placed.granted = None;
+    pub fn within_budget(mut self, wanted: SurfaceOptions, most: u64) -> (Self, Vec<f64>) {
+        for placed_object in &mut self.objects {
+            placed_object.granted = None;
         }
-        let needed = |stage: &Self, object| stage.predict(object, wanted).needed();
+        let needed = |placed: &Self, object| placed.predict(object, wanted).needed();
         let mut objects: Vec<(usize, f64)> = (0..self.objects.len())
             .map(|object| (object, needed(&self, object)))
             .collect();
@@ -95,23 +95,26 @@ impl Stage {
             }
             left = (left - need).max(0.0);
         }
-        let loosening = self.objects.iter().map(|placed| match placed.loosening {
-            MAX_LOOSENING.. => f64::INFINITY,
-            1.0 => 1.0,
-            times => ADVISED * times,
-        });
+        let loosening = self
+            .objects
+            .iter()
+            .map(|placed_object| match placed_object.loosening {
+                MAX_LOOSENING.. => f64::INFINITY,
+                1.0 => 1.0,
+                times => ADVISED * times,
+            });
         let loosening = loosening.collect();
         (self.granting(wanted, most), loosening)
     }
 
-    /// The same stage with at most `most` triangles, or those of the source, and the same aims.
-    pub(crate) fn granting(mut self, wanted: Wanted, most: u64) -> Self {
+    /// The same placed scene with at most `most` triangles, or those of the source, and the same aims.
+    pub(crate) fn granting(mut self, wanted: SurfaceOptions, most: u64) -> Self {
         if !wanted.subdivide {
             return self;
         }
         let steps = self.scene.steps().len();
         let sources: Vec<u64> = (self.objects.iter())
-            .map(|placed| placed.source_triangles)
+            .map(|placed_object| placed_object.source_triangles)
             .collect();
         let all: u64 = sources.iter().sum();
         // What each object needs at each step beyond its source.
@@ -144,19 +147,21 @@ impl Stage {
             .collect();
         let together = granted(most.saturating_sub(all), &together);
         let granted = at_steps.chunks(steps).zip(together);
-        for (placed, (steps, together)) in self.objects.iter_mut().zip(granted) {
+        for (placed_object, (steps, together)) in self.objects.iter_mut().zip(granted) {
             let steps = steps.to_vec();
-            placed.granted = Some(Granted { steps, together });
+            placed_object.granted = Some(Granted { steps, together });
         }
         self
     }
 
     /// The most that an object can have at all steps together.
-    fn most_triangles(&self, object: usize) -> f64 {
-        let placed = &self.objects[object];
-        let source = placed.source_triangles as f64;
+    fn max_triangles(&self, object: usize) -> f64 {
+        let placed_object = &self.objects[object];
+        let source = placed_object.source_triangles as f64;
         let steps = 0..self.scene.steps().len();
-        steps.map(|step| source + placed.granted(step) as f64).sum()
+        steps
+            .map(|step| source + placed_object.granted(step) as f64)
+            .sum()
     }
 
     /// Loosens the aim of one object until it needs no more than its share, and hardly less; what it needs then. An
@@ -216,7 +221,7 @@ impl Stage {
     }
 
     /// All steps together.
-    fn predict(&self, object: usize, wanted: Wanted) -> Predicted {
+    fn predict(&self, object: usize, wanted: SurfaceOptions) -> Predicted {
         let at_some = self.predict_some(object, wanted);
         let each = self.scene.steps().len() as f64 / at_some.len() as f64;
         let mut sum = Predicted {
@@ -233,19 +238,19 @@ impl Stage {
     }
 
     /// Each step, or some of many, evenly spread.
-    fn predict_some(&self, object: usize, wanted: Wanted) -> Vec<Predicted> {
-        let (object, placed) = (&self.scene.objects()[object], &self.objects[object]);
+    fn predict_some(&self, object: usize, wanted: SurfaceOptions) -> Vec<Predicted> {
+        let (object, placed_object) = (&self.scene.objects()[object], &self.objects[object]);
         let steps = self.scene.steps().len();
         let looked_at = steps.min(STEPS_LOOKED_AT);
         let triangles = (TRIANGLES_LOOKED_AT / looked_at).max(LEAST_LOOKED_AT);
-        let sketch = (wanted.subdivide.then(|| placed.sketch(triangles))).flatten();
-        let (placed, weights) = match &sketch {
+        let sketch = (wanted.subdivide.then(|| placed_object.sketch(triangles))).flatten();
+        let (placed_object, weights) = match &sketch {
             Some((sketch, weights)) => (sketch, weights.clone()),
-            None => (placed, vec![1.0; placed.parts.len()]),
+            None => (placed_object, vec![1.0; placed_object.parts.len()]),
         };
         let predict = |index: usize| {
             let step = index * (steps - 1) / (looked_at - 1).max(1);
-            let plan = self.plan(object, placed, step, wanted);
+            let plan = self.plan(object, placed_object, step, wanted);
             plan.predict(wanted, &weights)
         };
         (0..looked_at).map(predict).collect()

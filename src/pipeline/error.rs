@@ -1,11 +1,11 @@
-//! Why a stage has no photosurfaces.
+//! Why a placed scene has no photosurfaces.
 
 use thiserror::Error;
 
-/// Why a scene and models make no stage, or a stage no photosurfaces.
+/// Why a scene and models make no placed scene, or a placed scene no photosurfaces.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
-pub enum StageError {
+pub enum PlacedSceneError {
     /// Not one model for each object.
     #[error("there are {models} models for {objects} objects, expected one for each")]
     Models {

@@ -1,24 +1,24 @@
 //! Photosurfaces of all steps with the same triangles: what morph targets need.
 
 use super::plan::Plan;
-use super::{Photosurface, Stage, Wanted};
+use super::{Photosurface, PlacedScene, SurfaceOptions};
 
-impl Stage {
+impl PlacedScene {
     /// The photosurfaces of every part at all steps, with the same triangles at each: the mesh at rest is refined
     /// until it is within the tolerance at every step.
     ///
     /// For each part, in the order of the scene, one photosurface a step. Their certificates are for a file in which
     /// all steps share one offset, as [`Playback::Morph`](crate::Playback::Morph) writes it.
-    pub fn morphing(&self, wanted: Wanted) -> impl Iterator<Item = Vec<Photosurface>> {
+    pub fn morphing(&self, wanted: SurfaceOptions) -> impl Iterator<Item = Vec<Photosurface>> {
         let objects = self.scene.objects().iter().zip(&self.objects);
-        objects.flat_map(move |(object, placed)| {
+        objects.flat_map(move |(object, placed_object)| {
             let steps = 0..self.scene.steps().len();
             let plans: Vec<Plan<'_>> = steps
-                .map(|step| self.plan(object, placed, step, wanted))
+                .map(|step| self.plan(object, placed_object, step, wanted))
                 .collect();
             let views: Vec<_> = plans.iter().map(|plan| *plan.view()).collect();
-            let parts =
-                Plan::carry_out_together(plans, wanted, placed.granted_together()).into_iter();
+            let parts = Plan::carry_out_together(plans, wanted, placed_object.granted_together())
+                .into_iter();
             parts.map(move |surfaces| {
                 let steps = surfaces.into_iter().zip(&views).enumerate();
                 steps

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::facts::Facts;
-use super::seen::VertexData;
+use super::mapped_mesh::VertexData;
 use crate::material::Material;
 use crate::mesh::Mesh;
 use crate::scene::Attributes;

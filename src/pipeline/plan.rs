@@ -8,9 +8,9 @@ use std::borrow::Cow;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Wanted;
-use super::placed::Placed;
-use super::seen::Seen;
+use super::SurfaceOptions;
+use super::mapped_mesh::MappedMesh;
+use super::placed_object::PlacedObject;
 use crate::light_cone::{Extremes, View};
 use crate::material::Part;
 use crate::mesh::Mesh;
@@ -58,7 +58,7 @@ const FACETS_MADE_TO_PREDICT: u64 = 20_000;
 /// How one object is seen at one step, and what its tolerance allows.
 pub(super) struct Plan<'a> {
     view: View,
-    placed: &'a Placed,
+    placed_object: &'a PlacedObject,
     tolerance: Tolerance,
     /// The tolerance as a length; of an angle, at the nearest vertex.
     length: f64,
@@ -69,8 +69,8 @@ pub(super) struct Plan<'a> {
     shape: Option<Shape>,
     /// Of facets from a curved surface, at rest; zero for what is flat.
     deviation: f64,
-    /// The parts as they were placed, as seen.
-    seen: Vec<Seen>,
+    /// The parts as they were placed_object, as seen.
+    seen: Vec<MappedMesh>,
     precision: Precision,
     /// The box around all steps where they share one mesh in a file, as morph targets.
     travel: Option<(DVec3, DVec3)>,
@@ -82,7 +82,7 @@ pub(super) struct Plan<'a> {
 struct Draft<'a> {
     /// With names in files.
     parts: Cow<'a, [(String, Part)]>,
-    seen: Vec<Seen>,
+    seen: Vec<MappedMesh>,
     limits: Limits,
 }
 
@@ -112,9 +112,9 @@ pub(crate) struct Unrefined<'a> {
 /// A part of the object, refined and seen.
 pub(super) struct Surface<'a> {
     pub(super) name: String,
-    /// At rest; that of the stage where nothing was refined.
+    /// At rest; that of the placed scene where nothing was refined.
     pub(super) part: Cow<'a, Part>,
-    pub(super) seen: Seen,
+    pub(super) seen: MappedMesh,
     /// The box around all parts of the object that share an offset in a file with this one.
     pub(super) around: (DVec3, DVec3),
     pub(super) certificate: Certificate,
@@ -124,24 +124,24 @@ pub(super) struct Surface<'a> {
 struct Unproven<'a> {
     name: String,
     part: Cow<'a, Part>,
-    seen: Seen,
+    seen: MappedMesh,
     gap: f64,
     counts: Counts,
 }
 
 impl<'a> Plan<'a> {
     pub(super) fn new(
-        placed: &'a Placed,
+        placed_object: &'a PlacedObject,
         view: View,
         tolerance: Tolerance,
-        wanted: Wanted,
+        wanted: SurfaceOptions,
         granted: u64,
     ) -> Self {
-        let seen = seen_parts(&view, &placed.parts);
-        let aimed = tolerance.times(placed.loosening);
+        let seen = seen_parts(&view, &placed_object.parts);
+        let aimed = tolerance.times(placed_object.loosening);
         let mut plan = Self {
             view,
-            placed,
+            placed_object,
             tolerance,
             length: length_of(tolerance, &seen),
             aimed,
@@ -153,13 +153,16 @@ impl<'a> Plan<'a> {
             travel: None,
             granted,
         };
-        if let Some(shaped) = &placed.shaped {
-            let mesh = placed.parts[0].1.mesh();
+        if let Some(shaped) = &placed_object.shaped {
+            let mesh = placed_object.parts[0].1.mesh();
             let around = plan.around(&plan.seen);
             let rounding = plan.rounding(mesh, &plan.seen[0].extremes, around, 0.0);
             let target = CURVATURE_SHARE * plan.deviation_allowed(rounding, mesh);
             let shape = match wanted.subdivide {
-                true => shaped.within(target, placed.source_triangles.saturating_add(granted)),
+                true => shaped.within(
+                    target,
+                    placed_object.source_triangles.saturating_add(granted),
+                ),
                 false => shaped.shape.clone(),
             };
             plan.deviation = shape.deviation() * shaped.largest_scale;
@@ -184,7 +187,7 @@ impl<'a> Plan<'a> {
     }
 
     /// Refines where that is wanted, maps, and proves.
-    pub(super) fn carry_out(mut self, wanted: Wanted) -> Vec<Surface<'a>> {
+    pub(super) fn carry_out(mut self, wanted: SurfaceOptions) -> Vec<Surface<'a>> {
         let Draft {
             parts,
             seen,
@@ -199,7 +202,7 @@ impl<'a> Plan<'a> {
             }
             false => vec![None; parts.len()],
         };
-        type Before<'a> = ((String, Cow<'a, Part>), Seen);
+        type Before<'a> = ((String, Cow<'a, Part>), MappedMesh);
         let made = |(((name, part), seen), refined): (Before<'a>, Option<Refined>)| {
             let mesh = part.mesh();
             let Some(refined) = refined else {
@@ -215,7 +218,7 @@ impl<'a> Plan<'a> {
             let seen = if refined.mesh.positions().len() == mesh.positions().len() {
                 seen
             } else {
-                Seen::new(&self.view, &refined.mesh)
+                MappedMesh::new(&self.view, &refined.mesh)
             };
             let counts = Counts {
                 triangles_in: mesh.triangles().len(),
@@ -265,13 +268,13 @@ impl<'a> Plan<'a> {
 
     /// The box whose middle is the offset of all these parts in a file: one for all, so that corners which parts share
     /// are the same numbers in each.
-    fn around<'s>(&self, seen: impl IntoIterator<Item = &'s Seen>) -> Option<(DVec3, DVec3)> {
+    fn around<'s>(&self, seen: impl IntoIterator<Item = &'s MappedMesh>) -> Option<(DVec3, DVec3)> {
         self.travel.or_else(|| bounds(seen))
     }
 
     /// Refines the meshes of all parts, within what is granted beyond the triangles of the source.
     fn refine(&self, meshes: &[&Mesh], limits: &Limits, granted: u64) -> Vec<Refined> {
-        let most = self.placed.source_triangles.saturating_add(granted);
+        let most = self.placed_object.source_triangles.saturating_add(granted);
         let before: usize = meshes.iter().map(|mesh| mesh.triangles().len()).sum();
         let more = most.saturating_sub(before as u64);
         let observer = self.view.observer_rest();
@@ -283,7 +286,7 @@ impl<'a> Plan<'a> {
         &self,
         limits: &Limits,
         mesh: &Mesh,
-        seen: &Seen,
+        seen: &MappedMesh,
         around: Option<(DVec3, DVec3)>,
     ) -> Certificate {
         let (gap, counts) = self.survey_of_unrefined(limits, mesh);
@@ -307,7 +310,7 @@ impl<'a> Plan<'a> {
         &self,
         limits: &Limits,
         mesh: &Mesh,
-        seen: &Seen,
+        seen: &MappedMesh,
         around: Option<(DVec3, DVec3)>,
         gap: f64,
         counts: Counts,
@@ -328,10 +331,11 @@ impl<'a> Plan<'a> {
 
     /// The parts before refinement, those of a shape as fine as it has to be.
     fn draft(&mut self) -> Draft<'a> {
-        let Some((shape, shaped)) = self.shape.as_ref().zip(self.placed.shaped.as_ref()) else {
+        let Some((shape, shaped)) = self.shape.as_ref().zip(self.placed_object.shaped.as_ref())
+        else {
             return self.draft_as_placed(1.0);
         };
-        let parts = shaped.parts_like(shape, &self.placed.parts);
+        let parts = shaped.parts_like(shape, &self.placed_object.parts);
         let seen = seen_parts(&self.view, &parts);
         Draft {
             limits: self.limits(&parts, &seen, 1.0),
@@ -340,18 +344,18 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The parts as they were placed, each of whose facets stands for `each` smaller ones.
+    /// The parts as they were placed_object, each of whose facets stands for `each` smaller ones.
     fn draft_as_placed(&mut self, each: f64) -> Draft<'a> {
         let seen = std::mem::take(&mut self.seen);
         Draft {
-            limits: self.limits(&self.placed.parts, &seen, each),
-            parts: (&self.placed.parts).into(),
+            limits: self.limits(&self.placed_object.parts, &seen, each),
+            parts: (&self.placed_object.parts).into(),
             seen,
         }
     }
 
     /// What is allowed for these parts, each of whose facets stands for `each` smaller ones.
-    fn limits(&self, parts: &[(String, Part)], seen: &[Seen], each: f64) -> Limits {
+    fn limits(&self, parts: &[(String, Part)], seen: &[MappedMesh], each: f64) -> Limits {
         let mut curvature = 0.0;
         if self.deviation > 0.0 {
             let mesh = parts[0].1.mesh();
@@ -452,7 +456,7 @@ impl<'a> Plan<'a> {
     /// The place of a facet nearest to the observer, or one nearer than any of the curved surface that it stands for.
     fn nearest(&self, offsets: [DVec3; 3]) -> DVec3 {
         let nearest = nearest_point(offsets);
-        let deviation = (self.placed.shaped.as_ref()).map_or(0.0, |shaped| shaped.deviation);
+        let deviation = (self.placed_object.shaped.as_ref()).map_or(0.0, |shaped| shaped.deviation);
         nearest * (1.0 - deviation / nearest.length()).max(0.0)
     }
 
@@ -463,7 +467,7 @@ impl<'a> Plan<'a> {
         left: f64,
         curvature: f64,
         rounding: f64,
-        seen: &[Seen],
+        seen: &[MappedMesh],
     ) -> Allowance {
         let velocity = self.view.relative_velocity();
         let (gamma, gamma_beta) = (velocity.gamma(), velocity.gamma_beta());
@@ -494,7 +498,7 @@ impl<'a> Plan<'a> {
 }
 
 /// A tolerance as a length; an angle at the nearest vertex.
-fn length_of(tolerance: Tolerance, seen: &[Seen]) -> f64 {
+fn length_of(tolerance: Tolerance, seen: &[MappedMesh]) -> f64 {
     match (tolerance.unit(), tolerance.number()) {
         (Unit::Absolute, length) => length,
         (Unit::Relative, fraction) => fraction * diagonal(seen),
@@ -507,14 +511,14 @@ fn length_of(tolerance: Tolerance, seen: &[Seen]) -> f64 {
 }
 
 /// Of the box around what is seen.
-fn diagonal(seen: &[Seen]) -> f64 {
+fn diagonal(seen: &[MappedMesh]) -> f64 {
     bounds(seen).map_or(0.0, |(low, high)| length(high - low))
 }
 
-fn seen_parts(view: &View, parts: &[(String, Part)]) -> Vec<Seen> {
+fn seen_parts(view: &View, parts: &[(String, Part)]) -> Vec<MappedMesh> {
     let parts = parts.par_iter();
     parts
-        .map(|(_, part)| Seen::new(view, part.mesh()))
+        .map(|(_, part)| MappedMesh::new(view, part.mesh()))
         .collect()
 }
 
@@ -525,7 +529,7 @@ fn shrunk(corners: [DVec3; 3], parts: f64) -> [DVec3; 3] {
 }
 
 /// The box around what is seen.
-fn bounds<'s>(seen: impl IntoIterator<Item = &'s Seen>) -> Option<(DVec3, DVec3)> {
+fn bounds<'s>(seen: impl IntoIterator<Item = &'s MappedMesh>) -> Option<(DVec3, DVec3)> {
     let boxes = seen.into_iter().filter_map(|seen| seen.extremes.bounds());
     boxes.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
 }

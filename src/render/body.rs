@@ -2,12 +2,12 @@
 
 use glam::{DVec2, DVec3, Vec4};
 
+use super::aberration::{Aberration, RestRay};
 use super::bounds::Bounds;
 use super::caster::{Caster, MeshHit};
 use super::paint::Paint;
-use super::placed::SmoothHit;
 use super::ray::Ray;
-use super::sight::{RestRay, Sight};
+use super::shape_placement::SmoothHit;
 use super::sphere::Ball;
 use super::turned::Turned;
 use crate::mesh::Mesh;
@@ -128,12 +128,15 @@ impl Body {
         hit: &BodyHit,
         ray: RestRay,
         seen: DVec3,
-        sight: Option<&Sight>,
+        aberration: Option<&Aberration>,
         wires: bool,
     ) -> Hit<'_> {
-        let mapped = sight.filter(|_| self.is_mapped());
+        let mapped = aberration.filter(|_| self.is_mapped());
         let (normal_rest, ray_rest) = match mapped {
-            Some(sight) => (sight.normal_at_rest(hit.normal, seen), sight.ray(seen)),
+            Some(aberration) => (
+                aberration.normal_at_rest(hit.normal, seen),
+                aberration.ray(seen),
+            ),
             None => (unit(hit.normal), ray),
         };
         let cosine = normal_rest.map_or(1.0, |normal| normal.dot(ray_rest.direction));

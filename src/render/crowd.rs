@@ -6,11 +6,11 @@
 use glam::DVec3;
 
 use super::Viewpoint;
+use super::aberration::{Aberration, RestRay};
 use super::body::{Body, BodyHit, Hit, Stands};
 use super::bounds::Bounds;
 use super::cone::Cone;
 use super::ray::Ray;
-use super::sight::{RestRay, Sight};
 use super::tree::Tree;
 use crate::spacetime::WorldLine;
 
@@ -20,7 +20,7 @@ const THERE_AND_BACK: f64 = 1.0 + 4.0 * f64::EPSILON;
 pub(super) struct Crowd<'a> {
     eye: DVec3,
     /// Each with how the observer sees it; none from outside, and for what has no motion.
-    bodies: Vec<(&'a Body, Option<Sight>)>,
+    bodies: Vec<(&'a Body, Option<Aberration>)>,
     groups: Vec<Group>,
     /// Of what the groups take up of the sky.
     sky: Tree,
@@ -29,7 +29,7 @@ pub(super) struct Crowd<'a> {
 /// Bodies that follow each other and have one frame.
 struct Group {
     /// From the observer's frame to that of the bodies' geometry, where they are at rest.
-    sight: Option<Sight>,
+    aberration: Option<Aberration>,
     cone: Cone,
     /// The number of its first body.
     first: usize,
@@ -59,26 +59,26 @@ impl<'a> Crowd<'a> {
         // Where each group begins and the motion of those that are at rest in it.
         let mut starts: Vec<(usize, Option<WorldLine>)> = Vec::new();
         for body in bodies {
-            let sight = match (viewpoint, body.stands) {
+            let aberration = match (viewpoint, body.stands) {
                 (Viewpoint::Observer(moment), Stands::AtRest(line) | Stands::Mapped(line)) => {
-                    Some(Sight::new(moment, &line))
+                    Some(Aberration::new(moment, &line))
                 }
                 _ => None,
             };
-            let rests = match (&sight, body.stands) {
+            let rests = match (&aberration, body.stands) {
                 (Some(_), Stands::AtRest(line)) => Some(line),
                 _ => None,
             };
             if starts.last().is_none_or(|&(_, last)| last != rests) {
                 starts.push((placed.len(), rests));
             }
-            placed.push((body, sight));
+            placed.push((body, aberration));
         }
         let ends = starts.iter().skip(1).map(|start| start.0);
         let ends = ends.chain([placed.len()]);
         let groups = starts.iter().zip(ends).map(|(&(start, rests), end)| {
-            let sight = rests.and(placed[start].1);
-            Group::new(eye, sight, start, &placed[start..end])
+            let aberration = rests.and(placed[start].1);
+            Group::new(eye, aberration, start, &placed[start..end])
         });
         let groups: Vec<_> = groups.collect();
         let on_sky: Vec<_> = groups.iter().map(|group| group.cone.bounds()).collect();
@@ -167,13 +167,13 @@ impl<'a> Crowd<'a> {
     }
 
     fn seen(&self, found: &Found, seen: DVec3, wires: bool) -> Hit<'a> {
-        let (body, sight) = &self.bodies[found.body];
+        let (body, aberration) = &self.bodies[found.body];
         body.seen(
             found.body,
             &found.hit,
             found.ray,
             seen,
-            sight.as_ref(),
+            aberration.as_ref(),
             wires,
         )
     }
@@ -182,9 +182,9 @@ impl<'a> Crowd<'a> {
 impl Group {
     fn new(
         eye: DVec3,
-        sight: Option<Sight>,
+        aberration: Option<Aberration>,
         first: usize,
-        bodies: &[(&Body, Option<Sight>)],
+        bodies: &[(&Body, Option<Aberration>)],
     ) -> Self {
         // A body of nothing is nowhere, but has its number.
         let nothing = Bounds {
@@ -201,12 +201,12 @@ impl Group {
             [(body, _)] => body.geometry.ball(),
             _ => tree.bounds().map_or((eye, 0.0), |bounds| bounds.ball()),
         };
-        let cone = match &sight {
-            Some(sight) => sight.cone(center, radius),
+        let cone = match &aberration {
+            Some(aberration) => aberration.cone(center, radius),
             None => Cone::of_ball(eye, center, radius),
         };
         Self {
-            sight,
+            aberration,
             cone,
             first,
             tree,
@@ -214,8 +214,8 @@ impl Group {
     }
 
     fn path(&self, eye: DVec3, seen: DVec3) -> Path {
-        let ray = match &self.sight {
-            Some(sight) => sight.ray(seen),
+        let ray = match &self.aberration {
+            Some(aberration) => aberration.ray(seen),
             None => RestRay::unmoved(eye, seen),
         };
         Path {
@@ -228,7 +228,7 @@ impl Group {
     /// distance the first.
     fn nearest(
         &self,
-        bodies: &[(&Body, Option<Sight>)],
+        bodies: &[(&Body, Option<Aberration>)],
         ray: &Ray,
         beyond: f64,
         limit: f64,

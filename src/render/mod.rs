@@ -5,6 +5,7 @@
 //! followed back until it meets it. That a picture made so agrees with an ordinary picture of the
 //! photosurface is a statement about both (`tests/it/render/pictures.rs`).
 
+mod aberration;
 mod body;
 mod bounds;
 mod camera;
@@ -15,10 +16,9 @@ mod lettering;
 mod paint;
 mod picture;
 mod pixel_shader;
-mod placed;
 mod ray;
 mod scenery;
-mod sight;
+mod shape_placement;
 mod slant;
 mod sphere;
 mod stroke;

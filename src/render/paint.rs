@@ -13,7 +13,7 @@ use crate::material::{AlphaMode, Material};
 /// There is no light but the lamp at the eye, so gloss, metal and bumps stay out of pictures.
 pub(super) struct Paint {
     base_color: Vec4,
-    texture: Option<Placed>,
+    texture: Option<AppliedTexture>,
     alpha_mode: AlphaMode,
     pub(super) double_sided: bool,
     /// Whether it has its colour whatever the light.
@@ -21,7 +21,7 @@ pub(super) struct Paint {
 }
 
 /// A texture and how it is laid on a surface.
-struct Placed {
+struct AppliedTexture {
     pixels: Pixels,
     set: usize,
     transform: DAffine2,
@@ -46,7 +46,7 @@ impl Paint {
         };
         let texture = material.base_color_texture().and_then(|(texture, set)| {
             let (transform, other_set) = material.base_color_transform();
-            Some(Placed {
+            Some(AppliedTexture {
                 pixels: textures.pixels(texture, object)?,
                 set: other_set.unwrap_or(set) as usize,
                 transform,

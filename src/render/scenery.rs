@@ -43,7 +43,7 @@ const FACETS: f64 = 1e-4;
 ///
 /// ```
 /// use photosurface::{
-///     Camera, DVec3, PictureOptions, PictureSize, Projection, Scene, Scenery, Stage, Viewpoint, load_models,
+///     Camera, DVec3, PictureOptions, PictureSize, Projection, Scene, Scenery, PlacedScene, Viewpoint, load_models,
 /// };
 ///
 /// let scene = Scene::from_json(
@@ -51,15 +51,15 @@ const FACETS: f64 = 1e-4;
 ///          "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1 } }, "position": [0, 0, -5] } ] }"#,
 /// )?;
 /// let (models, _) = load_models(&scene, ".".as_ref())?;
-/// let stage = Stage::new(scene, models)?;
+/// let placed = PlacedScene::new(scene, models)?;
 /// let mut scenery = Scenery::new();
-/// for (object, parts) in stage.objects() {
+/// for (object, parts) in placed.objects() {
 ///     for (_, part) in parts {
 ///         scenery.add_at_rest(object, part);
 ///     }
 /// }
 /// let camera = Camera::new(PictureSize::new(64, 48)?, Projection::Pinhole { vertical_fov_deg: 30.0 }, DVec3::NEG_Z)?;
-/// let moment = stage.scene().moment(0);
+/// let moment = placed.scene().moment(0);
 /// let picture = scenery.picture(
 ///     &camera,
 ///     Viewpoint::Observer(&moment),

@@ -2,18 +2,18 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::placed::{Placed, SmoothHit};
+use super::shape_placement::{ShapePlacement, SmoothHit};
 use crate::shape::Sphere;
 
 /// A sphere, or what turning and stretching makes of one.
 pub(super) struct Ball {
     shape: Sphere,
-    placed: Placed,
+    placed: ShapePlacement,
 }
 
 impl Ball {
     pub(super) fn new(shape: Sphere, model_to_rest: DAffine3) -> Self {
-        let placed = Placed::new(shape.radius.get(), model_to_rest);
+        let placed = ShapePlacement::new(shape.radius.get(), model_to_rest);
         Self { shape, placed }
     }
 

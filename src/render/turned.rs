@@ -2,13 +2,13 @@
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use super::placed::{Placed, SmoothHit};
+use super::shape_placement::{ShapePlacement, SmoothHit};
 use crate::shape::Band;
 
 /// A closed surface of straight bands turned about an axis, or what turning and stretching makes of it.
 pub(super) struct Turned {
     bands: Vec<Band>,
-    placed: Placed,
+    placed: ShapePlacement,
 }
 
 impl Turned {
@@ -17,7 +17,7 @@ impl Turned {
         let radius = ends.map(DVec2::length).fold(0.0, f64::max);
         Self {
             bands,
-            placed: Placed::new(radius, model_to_rest),
+            placed: ShapePlacement::new(radius, model_to_rest),
         }
     }
 

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::random::Random;
 use super::true_surface::TrueSurface;
 use crate::light_cone::View;
-use crate::pipeline::{Photosurface, Stage, Wanted};
+use crate::pipeline::{Photosurface, PlacedScene, SurfaceOptions};
 use crate::scene::{Attributes, Unit};
 
 /// Places that a thread takes at a time; each lot has random numbers of its own, so that the result does not depend
@@ -16,7 +16,7 @@ const LOT: usize = 4096;
 /// However many photosurfaces share the places, each gets so many.
 const FEWEST_PLACES: usize = 100;
 
-/// The largest error found on the photosurfaces of a stage.
+/// The largest error found on the photosurfaces of a placed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Measured {
     /// A length in the observer's frame.
@@ -46,14 +46,19 @@ impl Pair {
     }
 }
 
-/// Holds about `samples` random places of all photosurfaces of a stage, `triangles` in all, against the truth.
+/// Holds about `samples` random places of all photosurfaces of a placed scene, `triangles` in all, against the truth.
 ///
 /// A place is a point of a facet at rest, on a round shape the point of the true surface nearest to it. Its light
 /// comes from where the map says; drawn it is on the flat triangle between the mapped corners, with the same weights of the
 /// corners. Neither the closed form of the gap nor anything else of the proof is used.
-pub(super) fn measure(stage: &Stage, wanted: Wanted, triangles: usize, samples: usize) -> Measured {
+pub(super) fn measure(
+    placed: &PlacedScene,
+    wanted: SurfaceOptions,
+    triangles: usize,
+    samples: usize,
+) -> Measured {
     // With places at rest, which no refined mesh holds otherwise.
-    let wanted = Wanted {
+    let wanted = SurfaceOptions {
         attributes: Attributes {
             rest_position: true,
             ..Attributes::default()
@@ -61,14 +66,14 @@ pub(super) fn measure(stage: &Stage, wanted: Wanted, triangles: usize, samples: 
         ..wanted
     };
     let mut worst = Measured::default();
-    for step in 0..stage.scene().steps().len() {
-        let owners = stage
+    for step in 0..placed.scene().steps().len() {
+        let owners = placed
             .objects()
             .flat_map(|(object, parts)| parts.iter().map(move |_| object));
-        let photosurfaces = stage.photosurfaces(step, wanted);
+        let photosurfaces = placed.photosurfaces(step, wanted);
         let photosurfaces = photosurfaces.expect("a step of the scene");
         for (photosurface, object) in photosurfaces.zip(owners) {
-            let view = stage.view(object, step);
+            let view = placed.view(object, step);
             let surface = TrueSurface::of(object);
             let here = photosurface.facts.triangles;
             let places = (samples as f64 * here as f64 / triangles as f64).ceil() as usize;

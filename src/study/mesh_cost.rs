@@ -11,7 +11,7 @@ use super::memory::{peak_bytes, restart_peak};
 use super::uniform::{UniformCost, uniform_cost};
 use super::{CostSettings, StudyError};
 use crate::material::Model;
-use crate::pipeline::{Facts, Photosurface, Stage, Wanted};
+use crate::pipeline::{Facts, Photosurface, PlacedScene, SurfaceOptions};
 use crate::scene::{Scene, Tolerance, Unit};
 use crate::tessellate::Precision;
 use crate::write::{Export, Format, write_glb};
@@ -97,17 +97,17 @@ pub(super) fn mesh_cost(
     settings: &CostSettings,
     mut done: impl FnMut(),
 ) -> Result<MeshCost, StudyError> {
-    let stage = Stage::new(
+    let placed = PlacedScene::new(
         scene.clone().with_tolerance_for_all(tolerance),
         models.to_vec(),
     )?;
-    let wanted = Wanted {
-        attributes: Format::Glb.attributes(stage.scene()),
+    let wanted = SurfaceOptions {
+        attributes: Format::Glb.attributes(placed.scene()),
         subdivide: true,
         precision: Precision::Single,
     };
     let number = tolerance.number();
-    let predictions = stage.predictions(wanted);
+    let predictions = placed.predictions(wanted);
     let predicted_triangles: f64 = predictions.iter().map(|p| p.triangles).sum();
     let mut cost = MeshCost {
         tolerance: number,
@@ -115,18 +115,18 @@ pub(super) fn mesh_cost(
         reachable: predictions.iter().all(|prediction| prediction.reachable),
         made: None,
     };
-    if predicted_triangles > settings.most_triangles as f64 {
+    if predicted_triangles > settings.max_triangles as f64 {
         (0..settings.repeats.get() + MEASUREMENTS).for_each(|_| done());
         return Ok(cost);
     }
-    let stage = stage.granting(wanted, settings.most_triangles);
+    let placed = placed.granting(wanted, settings.max_triangles);
     let counts_memory = restart_peak();
-    let first = run(&stage, wanted, tolerance)?;
+    let first = run(&placed, wanted, tolerance)?;
     let peak_memory_bytes = counts_memory.then(peak_bytes).flatten();
     done();
     let mut times = vec![first.seconds];
     for _ in 1..settings.repeats.get() {
-        times.push(run(&stage, wanted, tolerance)?.seconds);
+        times.push(run(&placed, wanted, tolerance)?.seconds);
         done();
     }
     let certificates = || first.facts.iter().map(|facts| &facts.certificate);
@@ -137,12 +137,12 @@ pub(super) fn mesh_cost(
         length,
         of_tolerance,
         of_bound,
-    } = measure(&stage, wanted, triangles, settings.samples.get());
+    } = measure(&placed, wanted, triangles, settings.samples.get());
     done();
     let uniform = uniform_cost(
-        &stage,
+        &placed,
         wanted,
-        settings.most_uniform_triangles,
+        settings.max_uniform_triangles,
         settings.samples.get(),
     );
     done();
@@ -176,22 +176,26 @@ struct Run {
     bytes: u64,
 }
 
-/// Predicts, makes and writes all photosurfaces of a stage, as an export does.
-fn run(stage: &Stage, wanted: Wanted, tolerance: Tolerance) -> Result<Run, StudyError> {
+/// Predicts, makes and writes all photosurfaces of a placed scene, as an export does.
+fn run(
+    placed: &PlacedScene,
+    wanted: SurfaceOptions,
+    tolerance: Tolerance,
+) -> Result<Run, StudyError> {
     let start = Instant::now();
-    black_box(stage.predictions(wanted));
+    black_box(placed.predictions(wanted));
     let predict = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let mut photosurfaces: Vec<Photosurface> = vec![];
-    for step in 0..stage.scene().steps().len() {
-        photosurfaces.extend(stage.photosurfaces(step, wanted)?);
+    for step in 0..placed.scene().steps().len() {
+        photosurfaces.extend(placed.photosurfaces(step, wanted)?);
     }
     let photosurface = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let mut sink = Counting(0);
     let export = Export {
-        scene: &stage.facts(),
-        marker: stage.marker(),
+        scene: &placed.facts(),
+        marker: placed.marker(),
         photosurfaces: &photosurfaces,
         playback: None,
     };

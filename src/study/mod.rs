@@ -24,7 +24,7 @@ pub use ray_cost::{Pictures, RayCost, RaySettings};
 pub use uniform::{UniformCost, UniformRun};
 
 use crate::material::Model;
-use crate::pipeline::{SceneFacts, Stage, StageError};
+use crate::pipeline::{PlacedScene, PlacedSceneError, SceneFacts};
 use crate::scene::{Scene, Tolerance, Unit};
 use crate::write::WriteError;
 
@@ -38,11 +38,11 @@ pub struct CostSettings {
     /// How often each tolerance and each number of rays is carried out; times are medians.
     pub repeats: NonZeroUsize,
     /// What would take more triangles is predicted, and not made.
-    pub most_triangles: u64,
+    pub max_triangles: u64,
     /// At about how many random places the error of each tolerance is measured.
     pub samples: NonZeroUsize,
     /// Uniform subdivision is counted, and not carried out, where it makes more triangles.
-    pub most_uniform_triangles: u64,
+    pub max_uniform_triangles: u64,
 }
 
 impl Default for CostSettings {
@@ -54,9 +54,9 @@ impl Default for CostSettings {
             tolerances: tolerances.map(fraction).to_vec(),
             rays: None,
             repeats: NonZeroUsize::MIN.saturating_add(2),
-            most_triangles: 3_000_000,
+            max_triangles: 3_000_000,
             samples: NonZeroUsize::MIN.saturating_add(199_999),
-            most_uniform_triangles: 2_000_000,
+            max_uniform_triangles: 2_000_000,
         }
     }
 }
@@ -132,7 +132,7 @@ pub enum StudyError {
     MixedUnits(Tolerance, Tolerance),
     /// Not one model for each object, or one that is nowhere.
     #[error(transparent)]
-    Stage(#[from] StageError),
+    PlacedScene(#[from] PlacedSceneError),
     /// Not one camera for each step.
     #[error("there are {cameras} cameras for {steps} steps, expected one for each")]
     Cameras {
@@ -182,17 +182,17 @@ impl CostStudy {
             let cost = mesh_cost::mesh_cost(scene, models, tolerance, settings, &mut done)?;
             meshes.push(cost);
         }
-        let stage = Stage::new(scene.clone(), models.to_vec())?;
+        let placed = PlacedScene::new(scene.clone(), models.to_vec())?;
         let (pictures, rays) = match rays {
             Some(rays) if !samples.is_empty() => {
                 let repeats = settings.repeats.get();
-                let (pictures, rays) = ray_cost::ray_costs(&stage, rays, &samples, repeats, done);
+                let (pictures, rays) = ray_cost::ray_costs(&placed, rays, &samples, repeats, done);
                 (Some(pictures), rays)
             }
             _ => (None, vec![]),
         };
         Ok(Self {
-            scene: stage.facts(),
+            scene: placed.facts(),
             unit,
             threads: rayon::current_num_threads(),
             repeats: settings.repeats.get(),
@@ -248,7 +248,7 @@ mod tests {
             tolerances: [1e-1, 1e-9]
                 .map(|number| Tolerance::relative(number).unwrap())
                 .to_vec(),
-            most_triangles: 1000,
+            max_triangles: 1000,
             samples: NonZeroUsize::MIN,
             ..CostSettings::default()
         };

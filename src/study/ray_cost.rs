@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::mesh_cost::median;
 use super::random::Random;
-use crate::pipeline::Stage;
+use crate::pipeline::PlacedScene;
 use crate::render::{Camera, PictureOptions, Scenery, Textures, Viewpoint, grid_places};
 
 /// A reference has so many times the places of the finest picture along each side of a pixel: by theory, a mean of two is
@@ -124,24 +124,24 @@ type Light = Vec<Vec3>;
 
 /// Studies each of `samples`, the fewest first and at least one, with one camera for each step; `done` is called after each picture.
 pub(super) fn ray_costs(
-    stage: &Stage,
+    placed: &PlacedScene,
     settings: &RaySettings,
     samples: &[u32],
     repeats: usize,
     mut done: impl FnMut(),
 ) -> (Pictures, Vec<RayCost>) {
     let cameras = &settings.cameras[..];
-    let steps = stage.scene().steps().len();
+    let steps = placed.scene().steps().len();
     let size = cameras[0].size();
     let finest = samples[samples.len() - 1];
     let mut scenery = Scenery::with_textures(&settings.textures);
-    for (object, parts) in stage.objects() {
+    for (object, parts) in placed.objects() {
         for (_, part) in parts {
             scenery.add_at_rest(object, part);
         }
     }
     let studio = Studio {
-        stage,
+        placed,
         cameras,
         scenery,
     };
@@ -187,7 +187,7 @@ pub(super) fn ray_costs(
 
 /// Everything at rest, and who looks at it.
 struct Studio<'a> {
-    stage: &'a Stage,
+    placed: &'a PlacedScene,
     cameras: &'a [Camera],
     scenery: Scenery,
 }
@@ -199,7 +199,7 @@ impl Studio<'_> {
         mut done: impl FnMut(),
         places: impl Fn(usize, usize) -> P + Sync,
     ) -> Light {
-        let scene = self.stage.scene();
+        let scene = self.placed.scene();
         let steps = (0..scene.steps().len()).zip(self.cameras);
         let light = steps.flat_map(|(step, camera)| {
             let moment = scene.moment(step);

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::measured::{Pair, largest, mix};
 use super::random::Random;
 use crate::mesh::Mesh;
-use crate::pipeline::{Stage, Unrefined, Wanted};
+use crate::pipeline::{PlacedScene, SurfaceOptions, Unrefined};
 use crate::tessellate::{Allowance, triangle_gap};
 
 /// Deeper than this nothing is divided: what an observer touches may have a gap after any number of halvings.
@@ -37,11 +37,11 @@ pub struct UniformRun {
     pub error: f64,
 }
 
-/// What uniform subdivision of a stage's meshes takes; carried out, with so many `samples`, where that makes no more
+/// What uniform subdivision of the meshes of a placed scene takes; carried out, with so many `samples`, where that makes no more
 /// triangles than `most`.
 pub(super) fn uniform_cost(
-    stage: &Stage,
-    wanted: Wanted,
+    placed: &PlacedScene,
+    wanted: SurfaceOptions,
     most: u64,
     samples: usize,
 ) -> UniformCost {
@@ -51,8 +51,8 @@ pub(super) fn uniform_cost(
         run: None,
     };
     let mut divided = vec![];
-    for step in 0..stage.scene().steps().len() {
-        for unrefined in stage.unrefined(step, wanted) {
+    for step in 0..placed.scene().steps().len() {
+        for unrefined in placed.unrefined(step, wanted) {
             let levels: Vec<u32> = unrefined
                 .parts
                 .iter()

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::pipeline::StageError;
+use crate::pipeline::PlacedSceneError;
 
 /// Why photosurfaces do not make a file.
 #[derive(Debug, Error)]
@@ -101,7 +101,7 @@ pub enum WriteError {
     },
     /// There are no photosurfaces.
     #[error(transparent)]
-    Stage(#[from] StageError),
+    PlacedScene(#[from] PlacedSceneError),
     /// All writing has been abandoned: see [`abandon_writes`](crate::abandon_writes).
     #[error("cancelled: all writing has been abandoned")]
     Cancelled,

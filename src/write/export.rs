@@ -26,7 +26,7 @@ pub enum Playback {
         frames_per_second: f64,
     },
     /// Each part is one node whose mesh has a morph target for every step after the first. All steps must have the
-    /// same triangles, part by part, as [`Stage::morphing`](crate::Stage::morphing) makes them.
+    /// same triangles, part by part, as [`PlacedScene::morphing`](crate::PlacedScene::morphing) makes them.
     Morph {
         /// Steps in a second, > 0.
         frames_per_second: f64,

@@ -5,7 +5,7 @@ use super::pack::{Packing, bounds};
 use super::ply::check_positions;
 use super::{Format, WriteError};
 use crate::material::Part;
-use crate::pipeline::{Stage, Wanted};
+use crate::pipeline::{PlacedScene, SurfaceOptions};
 
 impl Format {
     /// Maps the vertices that are there before any refinement, at the steps where they might be beyond the
@@ -14,24 +14,24 @@ impl Format {
     /// # Errors
     ///
     /// As the format's own writer: the first number that is too large, or an extent that vanishes.
-    pub fn check_range(self, stage: &Stage) -> Result<(), WriteError> {
-        let wanted = Wanted {
+    pub fn check_range(self, placed: &PlacedScene) -> Result<(), WriteError> {
+        let wanted = SurfaceOptions {
             subdivide: false,
-            attributes: self.attributes(stage.scene()),
-            ..Wanted::default()
+            attributes: self.attributes(placed.scene()),
+            ..SurfaceOptions::default()
         };
         // The boxes at rest, the same for all steps.
         let of_part = |(_, part): &(String, Part)| {
             let (low, high, _) = bounds(part.mesh().positions()).unwrap_or_default();
             (low, high)
         };
-        let objects = stage.objects();
+        let objects = placed.objects();
         let boxes: Vec<Vec<_>> = objects
             .map(|(_, parts)| parts.iter().map(of_part).collect())
             .collect();
-        let steps = 0..stage.scene().steps().len();
-        for step in steps.filter(|&step| !stage.is_within_f32(step, &boxes)) {
-            for photosurface in stage.photosurfaces(step, wanted)? {
+        let steps = 0..placed.scene().steps().len();
+        for step in steps.filter(|&step| !placed.is_within_f32(step, &boxes)) {
+            for photosurface in placed.photosurfaces(step, wanted)? {
                 let (name, mesh) = (&photosurface.facts.name, &photosurface.mesh);
                 match self {
                     Self::Glb | Self::Gltf => {
@@ -80,7 +80,7 @@ mod tests {
     use crate::jobs::load_models;
     use crate::scene::Scene;
 
-    fn stage(observer: &str, radius: &str) -> Stage {
+    fn placed(observer: &str, radius: &str) -> PlacedScene {
         let scene = format!(
             r#"{{ "observer": {{ "velocity": {observer} }},
                  "objects": [ {{ "name": "ball", "shape": {{ "sphere": {{ "radius": {radius} }} }}, "position": [0, 0, -5] }} ],
@@ -88,7 +88,7 @@ mod tests {
         );
         let scene = Scene::from_json(&scene).unwrap();
         let (models, _) = load_models(&scene, "".as_ref()).unwrap();
-        Stage::new(scene, models).unwrap()
+        PlacedScene::new(scene, models).unwrap()
     }
 
     #[test]
@@ -121,14 +121,14 @@ mod tests {
                 None,
             ),
         ] {
-            let stage = stage(observer, radius);
+            let placed = placed(observer, radius);
             for (format, expected) in [
                 (Format::Glb, gltf),
                 (Format::Gltf, gltf),
                 (Format::Ply, ply),
             ] {
                 let found = format
-                    .check_range(&stage)
+                    .check_range(&placed)
                     .map_err(|error| error.to_string());
                 match (found, expected) {
                     (Ok(()), None) => {}

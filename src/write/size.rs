@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::WriteError;
 use crate::material::Part;
 use crate::mesh::Mesh;
-use crate::pipeline::Stage;
+use crate::pipeline::PlacedScene;
 use crate::scene::{Attributes, Object, Scene, Source};
 
 /// A format that photosurfaces are written in.
@@ -29,7 +29,7 @@ impl Format {
         }
     }
 
-    /// How many bytes a file of `steps` steps of the stage has at least: its numbers and images, without the
+    /// How many bytes a file of `steps` steps of the placed scene has at least: its numbers and images, without the
     /// words around them, which are few.
     ///
     /// # Errors
@@ -39,18 +39,18 @@ impl Format {
     /// # Accuracy
     ///
     /// Never more than the file will have: what would fit is not refused.
-    pub fn least_size(self, stage: &Stage, steps: usize) -> Result<u64, WriteError> {
+    pub fn least_size(self, placed: &PlacedScene, steps: usize) -> Result<u64, WriteError> {
         // Other shapes are made as fine as their tolerance asks for, which may be next to nothing.
         let fixed = |object: &Object| match &object.source {
             Source::Shape(shape, _) => shape.has_resolution(),
             Source::File(_) | Source::Model(_) => true,
         };
-        let parts: Vec<&Part> = stage
+        let parts: Vec<&Part> = placed
             .objects()
             .filter(|(object, _)| fixed(object))
             .flat_map(|(_, parts)| parts.iter().map(|(_, part)| part))
             .collect();
-        let scalars = self.attributes(stage.scene()).scalars();
+        let scalars = self.attributes(placed.scene()).scalars();
         match self {
             Self::Glb | Self::Gltf => {
                 let bytes = least_gltf(&parts, steps as u64, scalars);
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
     use crate::jobs::load_models;
     use crate::material::Model;
-    use crate::pipeline::Wanted;
+    use crate::pipeline::SurfaceOptions;
     use crate::scene::Observer;
 
     #[test]
@@ -146,16 +146,17 @@ mod tests {
         let asked_for = scene.attributes();
         let scene = Scene::new(Observer::default(), objects).unwrap();
         let scene = scene.with_attributes(asked_for);
-        let stage = Stage::new(scene.with_steps(vec![0.0, 1.0, 2.0]).unwrap(), models).unwrap();
-        let wanted = Wanted {
-            attributes: Format::Ply.attributes(stage.scene()),
-            ..Wanted::default()
+        let placed =
+            PlacedScene::new(scene.with_steps(vec![0.0, 1.0, 2.0]).unwrap(), models).unwrap();
+        let wanted = SurfaceOptions {
+            attributes: Format::Ply.attributes(placed.scene()),
+            ..SurfaceOptions::default()
         };
         let photosurfaces: Vec<_> = (0..3)
-            .flat_map(|step| stage.photosurfaces(step, wanted).unwrap())
+            .flat_map(|step| placed.photosurfaces(step, wanted).unwrap())
             .collect();
         let export = Export {
-            scene: &stage.facts(),
+            scene: &placed.facts(),
             marker: None,
             photosurfaces: &photosurfaces,
             playback: None,
@@ -164,15 +165,15 @@ mod tests {
         write_glb(&export, &mut glb).unwrap();
         write_ply(&export, &mut ply).unwrap();
         for (format, file, words) in [(Format::Glb, glb, 12_000), (Format::Ply, ply, 500)] {
-            let least = format.least_size(&stage, 3).unwrap();
+            let least = format.least_size(&placed, 3).unwrap();
             let rest = file.len() as u64 - least;
             assert!(rest < words, "{format:?}: {rest} bytes more than {least}");
         }
-        let [one, two] = [1, 2].map(|steps| Format::Glb.least_size(&stage, steps).unwrap());
+        let [one, two] = [1, 2].map(|steps| Format::Glb.least_size(&placed, steps).unwrap());
         let most = 1 + (u64::from(u32::MAX) - one) / (two - one);
-        assert!(Format::Glb.least_size(&stage, most as usize).is_ok());
-        assert!(Format::Glb.least_size(&stage, most as usize + 1).is_err());
-        assert!(Format::Gltf.least_size(&stage, 34_000).is_ok());
-        assert!(Format::Ply.least_size(&stage, 800_000).is_err());
+        assert!(Format::Glb.least_size(&placed, most as usize).is_ok());
+        assert!(Format::Glb.least_size(&placed, most as usize + 1).is_err());
+        assert!(Format::Gltf.least_size(&placed, 34_000).is_ok());
+        assert!(Format::Ply.least_size(&placed, 800_000).is_err());
     }
 }

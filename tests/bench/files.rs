@@ -14,8 +14,8 @@ use std::sync::Arc;
 use common::refining::{Sighting, frozen, model};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use photosurface::{
-    DVec3, Export, Mesh, Photosurface, Shape, Source, Stage, Tolerance, Velocity, Wanted,
-    read_model, write_glb, write_ply,
+    DVec3, Export, Mesh, Photosurface, PlacedScene, Shape, Source, SurfaceOptions, Tolerance,
+    Velocity, read_model, write_glb, write_ply,
 };
 use settings::settings;
 
@@ -25,47 +25,51 @@ const CELLS: [u32; 5] = [22, 71, 224, 707, 2236];
 /// Of larger ones no OBJ is read: their text alone takes too long.
 const MOST_CELLS_OF_OBJ: u32 = 1000;
 
-type Writer = fn(&Stage, &[Photosurface]) -> Vec<u8>;
+type Writer = fn(&PlacedScene, &[Photosurface]) -> Vec<u8>;
 
 fn grid(cells: u32) -> Mesh {
     frozen(Shape::grid(2.0, cells).expect("a size and a count"), 1)
 }
 
 /// The photosurface of a mesh, all of its vertices and no other.
-fn photosurfaces(mesh: Mesh) -> (Stage, Vec<Photosurface>) {
+fn photosurfaces(mesh: Mesh) -> (PlacedScene, Vec<Photosurface>) {
     let velocity = Velocity::from_beta(0.6, DVec3::NEG_Z).expect("slower than light");
     let mut sighting = Sighting::new(DVec3::new(0.0, 0.0, 3.0), velocity, Tolerance::default());
-    sighting.wanted = Wanted {
+    sighting.wanted = SurfaceOptions {
         subdivide: false,
-        ..Wanted::default()
+        ..SurfaceOptions::default()
     };
     sighting.wanted.attributes.doppler = true;
-    let stage = sighting.stage(Source::Model(Arc::new(model(&[mesh]))));
-    let made = stage
+    let placed = sighting.placed(Source::Model(Arc::new(model(&[mesh]))));
+    let made = placed
         .photosurfaces(0, sighting.wanted)
         .expect("a step")
         .collect();
-    (stage, made)
+    (placed, made)
 }
 
-fn with_export<R>(stage: &Stage, made: &[Photosurface], write: impl FnOnce(&Export<'_>) -> R) -> R {
+fn with_export<R>(
+    placed: &PlacedScene,
+    made: &[Photosurface],
+    write: impl FnOnce(&Export<'_>) -> R,
+) -> R {
     write(&Export {
-        scene: &stage.facts(),
+        scene: &placed.facts(),
         marker: None,
         photosurfaces: made,
         playback: None,
     })
 }
 
-fn glb(stage: &Stage, made: &[Photosurface]) -> Vec<u8> {
+fn glb(placed: &PlacedScene, made: &[Photosurface]) -> Vec<u8> {
     let mut bytes = vec![];
-    with_export(stage, made, |export| write_glb(export, &mut bytes)).expect("memory takes it all");
+    with_export(placed, made, |export| write_glb(export, &mut bytes)).expect("memory takes it all");
     bytes
 }
 
-fn ply(stage: &Stage, made: &[Photosurface]) -> Vec<u8> {
+fn ply(placed: &PlacedScene, made: &[Photosurface]) -> Vec<u8> {
     let mut bytes = vec![];
-    with_export(stage, made, |export| write_ply(export, &mut bytes)).expect("memory takes it all");
+    with_export(placed, made, |export| write_ply(export, &mut bytes)).expect("memory takes it all");
     bytes
 }
 
@@ -103,8 +107,8 @@ fn import(criterion: &mut Criterion) {
                 bencher.iter(|| read_model(&path).expect("it was just written"));
             });
         }
-        let (stage, made) = photosurfaces(mesh);
-        let (path, bytes) = (path("grid.glb"), glb(&stage, &made));
+        let (placed, made) = photosurfaces(mesh);
+        let (path, bytes) = (path("grid.glb"), glb(&placed, &made));
         std::fs::write(&path, &bytes).expect("a temporary file can be written");
         group.throughput(Throughput::Bytes(bytes.len() as u64));
         group.bench_function(BenchmarkId::new("GLB, triangles", triangles), |bencher| {
@@ -117,12 +121,12 @@ fn import(criterion: &mut Criterion) {
 fn export(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("export, bytes");
     for cells in CELLS {
-        let (stage, made) = photosurfaces(grid(cells));
+        let (placed, made) = photosurfaces(grid(cells));
         let triangles = made[0].facts.triangles;
         for (name, write) in [("GLB", glb as Writer), ("PLY", ply)] {
-            group.throughput(Throughput::Bytes(write(&stage, &made).len() as u64));
+            group.throughput(Throughput::Bytes(write(&placed, &made).len() as u64));
             let id = BenchmarkId::new(format!("{name}, triangles"), triangles);
-            group.bench_function(id, |bencher| bencher.iter(|| write(&stage, &made)));
+            group.bench_function(id, |bencher| bencher.iter(|| write(&placed, &made)));
         }
     }
     group.finish();

@@ -14,8 +14,8 @@ use std::time::{Duration, Instant};
 
 use photosurface::{
     Camera, DVec3, Mesh, Model, Object, Observer, Part, PictureOptions, PictureSize, Place,
-    Projection, Scene, Scenery, Source, Stage, Velocity, Viewpoint, Wanted, read_gltf_bytes,
-    read_model,
+    PlacedScene, Projection, Scene, Scenery, Source, SurfaceOptions, Velocity, Viewpoint,
+    read_gltf_bytes, read_model,
 };
 use serde_json::{Value, json};
 
@@ -32,12 +32,13 @@ fn main() {
         false => &[100, 1000, 10_000, 100_000],
     };
     let kinds: [(&str, Timed); 9] = [
-        ("reading nodes of one name, and a stage of them", |n, _| {
+        ("reading nodes of one name, and a placed of them", |n, _| {
             nodes(n, |_| "bolt".to_owned())
         }),
-        ("reading nodes of own names, and a stage of them", |n, _| {
-            nodes(n, |k| format!("n{k}"))
-        }),
+        (
+            "reading nodes of own names, and a placed of them",
+            |n, _| nodes(n, |k| format!("n{k}")),
+        ),
         ("reading materials of a glTF", |n, _| gltf_materials(n)),
         ("reading usemtl and newmtl of an OBJ", obj_materials),
         ("a picture of parts of one object", |n, _| parts(n)),
@@ -113,11 +114,11 @@ fn observer() -> Observer {
     }
 }
 
-fn stage(objects: Vec<(Object, Arc<Model>)>) -> Stage {
+fn placed(objects: Vec<(Object, Arc<Model>)>) -> PlacedScene {
     let (objects, models): (Vec<_>, Vec<_>) = objects.into_iter().unzip();
     let scene = Scene::new(observer(), objects).expect("names of their own");
     let models = models.iter().map(|model| Model::clone(model)).collect();
-    Stage::new(scene, models).expect("one model an object")
+    PlacedScene::new(scene, models).expect("one model an object")
 }
 
 fn object(name: &str, model: Arc<Model>) -> (Object, Arc<Model>) {
@@ -125,10 +126,10 @@ fn object(name: &str, model: Arc<Model>) -> (Object, Arc<Model>) {
 }
 
 /// A picture of a hundred by a hundred rays, the search trees included.
-fn picture(stage: &Stage) -> Duration {
+fn picture(placed: &PlacedScene) -> Duration {
     timed(|| {
         let mut scenery = Scenery::new();
-        for (object, parts) in stage.objects() {
+        for (object, parts) in placed.objects() {
             for (_, part) in parts {
                 scenery.add_at_rest(object, part);
             }
@@ -138,7 +139,7 @@ fn picture(stage: &Stage) -> Duration {
             vertical_fov_deg: 60.0,
         };
         let camera = Camera::new(size, projection, DVec3::NEG_Z).expect("a fair camera");
-        let moment = stage.scene().moment(0);
+        let moment = placed.scene().moment(0);
         let options = PictureOptions {
             samples: 1,
             ..PictureOptions::default()
@@ -149,7 +150,7 @@ fn picture(stage: &Stage) -> Duration {
 
 fn parts(count: u32) -> Duration {
     let cubes = model((0..count).map(|k| cube(1.0, place(k, count))));
-    picture(&stage(vec![object("cubes", cubes)]))
+    picture(&placed(vec![object("cubes", cubes)]))
 }
 
 fn objects(count: u32) -> Duration {
@@ -161,7 +162,7 @@ fn objects(count: u32) -> Duration {
         object.velocity = Velocity::from_beta(speed, DVec3::X).expect("slower than light");
         (object, cube)
     });
-    picture(&stage(objects.collect()))
+    picture(&placed(objects.collect()))
 }
 
 /// A tilted disc that is cut from one point of its rim.
@@ -173,7 +174,7 @@ fn slivers(count: u32) -> Duration {
     });
     let fan = (1..=count).map(|k| [0, k, k + 1]).collect();
     let fan = Mesh::new(rim.collect(), fan).expect("a fan");
-    picture(&stage(vec![object("fan", model(std::iter::once(fan)))]))
+    picture(&placed(vec![object("fan", model(std::iter::once(fan)))]))
 }
 
 fn scene(count: u32) -> Duration {
@@ -184,8 +185,8 @@ fn scene(count: u32) -> Duration {
             object.position = Place::new(place(k, count)).expect("finite");
             (object, cube)
         });
-        let stage = stage(objects.collect());
-        unrefined(&stage, 1)
+        let placed = placed(objects.collect());
+        unrefined(&placed, 1)
     })
 }
 
@@ -199,19 +200,19 @@ fn steps(count: u32) -> Duration {
             .collect();
         let scene = scene.with_steps(times).expect("finite times");
         unrefined(
-            &Stage::new(scene, vec![Model::clone(&cube)]).expect("one model"),
+            &PlacedScene::new(scene, vec![Model::clone(&cube)]).expect("one model"),
             count,
         )
     })
 }
 
-fn unrefined(stage: &Stage, steps: u32) -> usize {
-    let wanted = Wanted {
+fn unrefined(placed: &PlacedScene, steps: u32) -> usize {
+    let wanted = SurfaceOptions {
         subdivide: false,
-        ..Wanted::default()
+        ..SurfaceOptions::default()
     };
     let surfaces =
-        (0..steps as usize).flat_map(|step| stage.photosurfaces(step, wanted).expect("a step"));
+        (0..steps as usize).flat_map(|step| placed.photosurfaces(step, wanted).expect("a step"));
     surfaces.map(|surface| surface.mesh.positions().len()).sum()
 }
 
@@ -244,7 +245,7 @@ fn gltf(nodes: Value, primitives: Value, materials: usize) -> Vec<u8> {
 fn read(bytes: &[u8]) -> Duration {
     timed(|| {
         let (model, _) = read_gltf_bytes(bytes, "".as_ref()).expect("a glTF");
-        stage(vec![object("read", Arc::new(model))])
+        placed(vec![object("read", Arc::new(model))])
     })
 }
 

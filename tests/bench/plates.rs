@@ -38,12 +38,12 @@ fn main() {
         for e in [1e-3, 1e-4, 1e-5] {
             let tolerance = Tolerance::absolute(e * velocity.gamma_beta()).expect("a length");
             let sighting = Sighting::new(DVec3::ZERO, velocity, tolerance);
-            let stage = sighting.stage(Source::Model(Arc::new(model(&[plate(h)]))));
+            let placed = sighting.placed(Source::Model(Arc::new(model(&[plate(h)]))));
             let mut times: Vec<Duration> = (0..REPEATS)
                 .map(|_| {
                     let start = Instant::now();
                     let made = pool.install(|| {
-                        stage
+                        placed
                             .photosurfaces(0, sighting.wanted)
                             .expect("a step")
                             .count()

@@ -15,7 +15,7 @@ use common::refining::model;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use photosurface::{
     BuiltInScene, Camera, DVec3, Mesh, Object, Observer, PictureOptions, PictureSize, Place,
-    Projection, Scene, Scenery, Source, Stage, Velocity, Viewpoint, load_models,
+    PlacedScene, Projection, Scene, Scenery, Source, Velocity, Viewpoint, load_models,
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use settings::settings;
@@ -64,9 +64,9 @@ fn pools() -> [(usize, ThreadPool); 2] {
     })
 }
 
-/// A stage, ready to be seen at its first step.
+/// A placed scene, ready to be seen at its first step.
 struct Sight {
-    stage: Stage,
+    placed: PlacedScene,
     scenery: Scenery,
     camera: Camera,
 }
@@ -74,22 +74,22 @@ struct Sight {
 impl Sight {
     fn new(scene: Scene, camera: Camera) -> Self {
         let (models, _) = load_models(&scene, ".".as_ref()).expect("nothing to be read");
-        let stage = Stage::new(scene, models).expect("one model an object");
+        let placed = PlacedScene::new(scene, models).expect("one model an object");
         let mut scenery = Scenery::new();
-        for (object, parts) in stage.objects() {
+        for (object, parts) in placed.objects() {
             for (_, part) in parts {
                 scenery.add_at_rest(object, part);
             }
         }
         Self {
-            stage,
+            placed,
             scenery,
             camera,
         }
     }
 
     fn take(&self, samples: u32) {
-        let scene = self.stage.scene();
+        let scene = self.placed.scene();
         let moment = scene.moment(0);
         let viewpoint = Viewpoint::Observer(&moment);
         let options = PictureOptions {

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use common::refining::{Sighting, frozen, model, plate};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use photosurface::{DVec3, Mesh, Shape, Source, Stage, Tolerance, Velocity};
+use photosurface::{DVec3, Mesh, PlacedScene, Shape, Source, Tolerance, Velocity};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use settings::settings;
 
@@ -24,8 +24,8 @@ fn sighting(tolerance: f64) -> Sighting {
     Sighting::new(DVec3::ZERO, velocity, tolerance)
 }
 
-fn stage(sighting: &Sighting, mesh: Mesh) -> Stage {
-    sighting.stage(Source::Model(Arc::new(model(&[mesh]))))
+fn placed(sighting: &Sighting, mesh: Mesh) -> PlacedScene {
+    sighting.placed(Source::Model(Arc::new(model(&[mesh]))))
 }
 
 fn pool(threads: usize) -> ThreadPool {
@@ -43,7 +43,7 @@ fn without_subdivision(criterion: &mut Criterion) {
         let grid = Shape::grid(2.0, cells).expect("a size and a count");
         let mesh = frozen(grid, 1);
         let vertices = mesh.positions().len() as u64;
-        let stage = stage(&sighting, mesh);
+        let placed = placed(&sighting, mesh);
         group.throughput(Throughput::Elements(vertices));
         for threads in THREADS {
             let pool = pool(threads);
@@ -51,7 +51,7 @@ fn without_subdivision(criterion: &mut Criterion) {
             group.bench_function(id, |bencher| {
                 bencher.iter(|| {
                     pool.install(|| {
-                        stage
+                        placed
                             .photosurfaces(0, sighting.wanted)
                             .expect("a step")
                             .count()
@@ -69,8 +69,8 @@ fn plates(criterion: &mut Criterion) {
     for h in [1.0, 0.1, 0.01, 0.001] {
         for e in [1e-3, 1e-4, 1e-5] {
             let sighting = sighting(e);
-            let stage = stage(&sighting, plate(h));
-            let made = stage.photosurfaces(0, sighting.wanted).expect("a step");
+            let placed = placed(&sighting, plate(h));
+            let made = placed.photosurfaces(0, sighting.wanted).expect("a step");
             let triangles: usize = made.map(|photosurface| photosurface.facts.triangles).sum();
             group.throughput(Throughput::Elements(triangles as u64));
             for threads in THREADS {
@@ -79,7 +79,7 @@ fn plates(criterion: &mut Criterion) {
                 group.bench_function(id, |bencher| {
                     bencher.iter(|| {
                         pool.install(|| {
-                            stage
+                            placed
                                 .photosurfaces(0, sighting.wanted)
                                 .expect("a step")
                                 .count()

@@ -7,9 +7,9 @@ use crate::common::command::{Workplace, glb_json};
 use crate::common::glb::Glb;
 use crate::common::refining::{Sighting, model, plate};
 use photosurface::{
-    DAffine3, DVec3, Event, Lorentz, Mesh, Object, Observer, PhotosurfaceMap, Precision, Scene,
-    Source, Stage, Tolerance, Velocity, View, Wanted, WorldLine, WriteError, abandon_writes,
-    destination, load_models, write_whole,
+    DAffine3, DVec3, Event, Lorentz, Mesh, Object, Observer, PhotosurfaceMap, PlacedScene,
+    Precision, Scene, Source, SurfaceOptions, Tolerance, Velocity, View, WorldLine, WriteError,
+    abandon_writes, destination, load_models, write_whole,
 };
 use serde_json::json;
 
@@ -363,11 +363,11 @@ fn coordinates_of_any_size_do_not_halve_for_ever() {
         };
         let scene = Scene::new(observer, vec![Object::new("triangle", source)]).unwrap();
         let (models, _) = load_models(&scene, ".".as_ref()).unwrap();
-        let wanted = Wanted {
+        let wanted = SurfaceOptions {
             subdivide: false,
-            ..Wanted::default()
+            ..SurfaceOptions::default()
         };
-        let made = Stage::new(scene, models)
+        let made = PlacedScene::new(scene, models)
             .unwrap()
             .photosurfaces(0, wanted)
             .unwrap()
@@ -532,16 +532,21 @@ fn a_stage_is_made_of_what_fits_or_not_at_all() {
         (scene.unwrap(), models)
     };
     let (scene, models) = of(mesh);
-    let none = Stage::new(scene.clone(), vec![]).unwrap_err().to_string();
+    let none = PlacedScene::new(scene.clone(), vec![])
+        .unwrap_err()
+        .to_string();
     assert!(none.contains("0 models for 1 objects"), "{none}");
-    let stage = Stage::new(scene, models).unwrap();
-    let late = stage.photosurfaces(1, Wanted::default()).err().unwrap();
+    let placed = PlacedScene::new(scene, models).unwrap();
+    let late = placed
+        .photosurfaces(1, SurfaceOptions::default())
+        .err()
+        .unwrap();
     assert!(
         late.to_string().contains("step 1 of a scene with 1"),
         "{late}"
     );
     let (scene, models) = of(nowhere);
-    let odd = Stage::new(scene, models).unwrap_err().to_string();
+    let odd = PlacedScene::new(scene, models).unwrap_err().to_string();
     assert!(
         odd.contains("part \"part0\" of object \"triangle\""),
         "{odd}"

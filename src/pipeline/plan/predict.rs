@@ -5,9 +5,9 @@ use rayon::prelude::*;
 
 use super::{FACETS_MADE_TO_PREDICT, LEAST_FOR_GAP, Plan, shrunk};
 use crate::material::Part;
-use crate::pipeline::Wanted;
-use crate::pipeline::placed::spread;
-use crate::pipeline::seen::Seen;
+use crate::pipeline::SurfaceOptions;
+use crate::pipeline::mapped_mesh::MappedMesh;
+use crate::pipeline::placed_object::spread;
 use crate::scene::Unit;
 use crate::shape::Shape;
 use crate::tessellate::{local_stretch, predicted_pieces};
@@ -27,11 +27,15 @@ impl Plan<'_> {
     /// Of a finer round shape than is at hand each facet stands for several, smaller ones.
     ///
     /// `weights` says for each part of how many triangles each of its own is a sample.
-    pub(in crate::pipeline) fn predict(mut self, wanted: Wanted, weights: &[f64]) -> Predicted {
+    pub(in crate::pipeline) fn predict(
+        mut self,
+        wanted: SurfaceOptions,
+        weights: &[f64],
+    ) -> Predicted {
         let velocity = self.view.relative_velocity();
         let facets = self.shape.as_ref().map_or(0, Shape::triangle_count);
         let (draft, each) = if facets > FACETS_MADE_TO_PREDICT {
-            let at_hand = self.placed.parts[0].1.mesh().triangles().len();
+            let at_hand = self.placed_object.parts[0].1.mesh().triangles().len();
             let each = facets as f64 / at_hand as f64;
             (self.draft_as_placed(each), each)
         } else {
@@ -54,7 +58,7 @@ impl Plan<'_> {
         let before = facets.iter().map(|(weight, _)| weight).sum();
         if !wanted.subdivide || velocity.rapidity() == 0.0 {
             let around = self.around(&draft.seen);
-            let prove = |((_, part), seen): (&(String, Part), &Seen)| {
+            let prove = |((_, part), seen): (&(String, Part), &MappedMesh)| {
                 self.certificate_of_unrefined(&draft.limits, part.mesh(), seen, around)
             };
             return Predicted {
@@ -63,7 +67,7 @@ impl Plan<'_> {
                 reachable: (draft.parts.iter().zip(&draft.seen).map(prove)).all(|c| c.complete),
             };
         }
-        let looked_at = match &self.placed.shaped {
+        let looked_at = match &self.placed_object.shaped {
             Some(_) => facets.len().min(FACETS_MADE_TO_PREDICT as usize),
             None => facets.len(),
         };

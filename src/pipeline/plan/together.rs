@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use super::{Limits, Plan, Surface, bounds, seen_parts};
 use crate::material::Part;
 use crate::mesh::Mesh;
-use crate::pipeline::Wanted;
-use crate::pipeline::seen::Seen;
+use crate::pipeline::SurfaceOptions;
+use crate::pipeline::mapped_mesh::MappedMesh;
 use crate::tessellate::{Counts, shares, survey};
 
 impl<'a> Plan<'a> {
@@ -20,7 +20,7 @@ impl<'a> Plan<'a> {
     /// in proportion to what is granted for it and those behind it where each has a mesh of its own.
     pub(in crate::pipeline) fn carry_out_together(
         mut plans: Vec<Self>,
-        wanted: Wanted,
+        wanted: SurfaceOptions,
         granted: u64,
     ) -> Vec<Vec<Surface<'a>>> {
         let shapes = plans
@@ -45,7 +45,7 @@ impl<'a> Plan<'a> {
             if !wanted.subdivide || plan.view.relative_velocity().rapidity() == 0.0 {
                 continue;
             }
-            let source = plan.placed.source_triangles;
+            let source = plan.placed_object.source_triangles;
             let used = triangles(&parts).saturating_sub(source);
             let weights: Vec<f64> = plans[step..]
                 .iter()
@@ -86,8 +86,8 @@ impl<'a> Plan<'a> {
     }
 
     /// Parts as they are seen at each step, with what is allowed there when all steps share one offset in a file.
-    fn travelling(plans: &mut [Self], parts: &[(String, Part)]) -> Vec<(Vec<Seen>, Limits)> {
-        let seen: Vec<Vec<Seen>> = plans
+    fn travelling(plans: &mut [Self], parts: &[(String, Part)]) -> Vec<(Vec<MappedMesh>, Limits)> {
+        let seen: Vec<Vec<MappedMesh>> = plans
             .iter()
             .map(|plan| seen_parts(&plan.view, parts))
             .collect();

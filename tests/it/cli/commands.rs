@@ -462,7 +462,7 @@ fn the_report_and_the_extras_say_the_same() {
         .as_array()
         .unwrap()
         .iter()
-        .filter_map(|stage| stage["name"].as_str())
+        .filter_map(|placed| placed["name"].as_str())
         .collect();
     assert_eq!(stages, ["read", "predict", "photosurface", "write"]);
 }

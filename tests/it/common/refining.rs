@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use photosurface::{
-    Appearance, DVec3, Mesh, Model, Object, Observer, Part, PhotosurfaceMap, Place, Precision,
-    Scene, Shape, Source, Stage, Tolerance, Velocity, Wanted, load_models,
+    Appearance, DVec3, Mesh, Model, Object, Observer, Part, PhotosurfaceMap, Place, PlacedScene,
+    Precision, Scene, Shape, Source, SurfaceOptions, Tolerance, Velocity, load_models,
 };
 
 use super::Random;
@@ -16,7 +16,7 @@ pub(crate) struct Sighting {
     pub(crate) observer: DVec3,
     pub(crate) velocity: Velocity,
     pub(crate) tolerance: Tolerance,
-    pub(crate) wanted: Wanted,
+    pub(crate) wanted: SurfaceOptions,
 }
 
 /// A photosurface with its vertices at rest.
@@ -32,9 +32,9 @@ impl Sighting {
     /// With the digits of `f64`, which hide no error.
     pub(crate) fn new(observer: DVec3, velocity: Velocity, tolerance: Tolerance) -> Self {
         let precision = Precision::Double;
-        let wanted = Wanted {
+        let wanted = SurfaceOptions {
             precision,
-            ..Wanted::default()
+            ..SurfaceOptions::default()
         };
         Self {
             observer,
@@ -44,7 +44,7 @@ impl Sighting {
         }
     }
 
-    pub(crate) fn stage(&self, source: Source) -> Stage {
+    pub(crate) fn placed(&self, source: Source) -> PlacedScene {
         let observer = Observer {
             position: Place::new(self.observer).expect("a finite place"),
             velocity: self.velocity,
@@ -54,17 +54,17 @@ impl Sighting {
             .expect("one object with a name")
             .with_tolerance(self.tolerance);
         let (models, _) = load_models(&scene, ".".as_ref()).expect("nothing to be read");
-        Stage::new(scene, models).expect("one model an object")
+        PlacedScene::new(scene, models).expect("one model an object")
     }
 
     pub(crate) fn of_source(&self, source: Source) -> Vec<Sighted> {
-        self.sighted(&self.stage(source))
+        self.sighted(&self.placed(source))
     }
 
-    /// The photosurfaces of a stage of this sighting.
-    pub(crate) fn sighted(&self, stage: &Stage) -> Vec<Sighted> {
+    /// The photosurfaces of a placed scene of this sighting.
+    pub(crate) fn sighted(&self, placed: &PlacedScene) -> Vec<Sighted> {
         let map = PhotosurfaceMap::new(&self.velocity);
-        let surfaces = stage.photosurfaces(0, self.wanted).expect("a step");
+        let surfaces = placed.photosurfaces(0, self.wanted).expect("a step");
         let sighted = surfaces.map(|surface| Sighted {
             certificate: surface.facts.certificate,
             rest: (surface.mesh.positions().iter())

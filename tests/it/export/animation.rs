@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use crate::common::Random;
 use crate::common::command::{Workplace, glb_json};
 use crate::common::glb::Glb;
-use photosurface::{Attributes, DVec3, Photosurface, Scene, Stage, View, Wanted, load_models};
+use photosurface::{
+    Attributes, DVec3, Photosurface, PlacedScene, Scene, SurfaceOptions, View, load_models,
+};
 use serde_json::Value;
 
 /// A round shape, a flat one near the observer, and one that moves too.
@@ -19,33 +21,33 @@ const SCENE: &str = r#"{
   "steps": { "from": -3, "to": 3, "count": 5 },
   "tolerance": { "relative": 3e-3 } }"#;
 
-fn stage() -> Stage {
+fn placed() -> PlacedScene {
     let scene = Scene::from_json(SCENE).expect("a scene");
     let (models, _) = load_models(&scene, "".as_ref()).expect("nothing to read");
-    Stage::new(scene, models).expect("one model an object")
+    PlacedScene::new(scene, models).expect("one model an object")
 }
 
 /// The places at rest are those of the first step, wherever they are asked for.
-fn morphing(stage: &Stage) -> Vec<Vec<Photosurface>> {
-    let wanted = Wanted {
+fn morphing(placed: &PlacedScene) -> Vec<Vec<Photosurface>> {
+    let wanted = SurfaceOptions {
         attributes: Attributes {
             rest_position: true,
             ..Attributes::default()
         },
-        ..Wanted::default()
+        ..SurfaceOptions::default()
     };
-    stage.morphing(wanted).collect()
+    placed.morphing(wanted).collect()
 }
 
 /// One mesh at rest is within the tolerance at every step: random points of it, mapped, are within the certificate
 /// of where the flat triangles between mapped corners have them.
 #[test]
 fn one_mesh_is_within_the_tolerance_at_every_step() {
-    let stage = stage();
+    let placed = placed();
     let mut random = Random::new(11);
-    let parts = morphing(&stage);
+    let parts = morphing(&placed);
     assert_eq!(parts.len(), 3);
-    for (object, steps) in stage.scene().objects().iter().zip(&parts) {
+    for (object, steps) in placed.scene().objects().iter().zip(&parts) {
         assert_eq!(steps.len(), 5);
         let mut largest: f64 = 0.0;
         for (step, surface) in steps.iter().enumerate() {
@@ -56,7 +58,7 @@ fn one_mesh_is_within_the_tolerance_at_every_step() {
                 surface.facts.name
             );
             assert_eq!(surface.mesh.triangles(), steps[0].mesh.triangles());
-            let view = View::new(&stage.scene().moment(step), &object.world_line());
+            let view = View::new(&placed.scene().moment(step), &object.world_line());
             let rest = surface
                 .vertex_data
                 .rest_positions
@@ -93,10 +95,12 @@ fn one_mesh_is_within_the_tolerance_at_every_step() {
 /// where the observer passes close by, each step needs them in another place.
 #[test]
 fn one_mesh_for_all_steps_is_no_finer_than_it_has_to_be() {
-    let stage = stage();
-    for (index, steps) in morphing(&stage).iter().enumerate() {
+    let placed = placed();
+    for (index, steps) in morphing(&placed).iter().enumerate() {
         let alone = |step| {
-            let mut surfaces = stage.photosurfaces(step, Wanted::default()).unwrap();
+            let mut surfaces = placed
+                .photosurfaces(step, SurfaceOptions::default())
+                .unwrap();
             surfaces
                 .nth(index)
                 .expect("one part an object")
@@ -206,7 +210,7 @@ fn morph_targets_add_up_to_each_step() {
         .map(|node| node["name"].as_str().unwrap())
         .collect();
     assert_eq!(names, ["observer", "ball", "wall", "rod"]);
-    for (part, steps) in morphing(&stage()).iter().enumerate() {
+    for (part, steps) in morphing(&placed()).iter().enumerate() {
         let node = &nodes[part + 1];
         let frames = node["extras"]["frames"].as_array().unwrap();
         let mesh = &file.json["meshes"][node["mesh"].as_u64().unwrap() as usize];
@@ -300,7 +304,7 @@ fn attributes_are_there_when_asked_for() {
     for names in attributes(&file) {
         assert_eq!(names, all.map(str::to_owned).into());
     }
-    let stage = stage();
+    let placed = placed();
     let mut meshes = file.json["meshes"].as_array().unwrap().iter();
     let marker = &meshes.next().unwrap()["primitives"][0]["attributes"];
     assert!(
@@ -308,16 +312,20 @@ fn attributes_are_there_when_asked_for() {
             .iter()
             .all(|factor| *factor == 1.0)
     );
-    let surfaces = (0..5).flat_map(|step| stage.photosurfaces(step, Wanted::default()).unwrap());
+    let surfaces = (0..5).flat_map(|step| {
+        placed
+            .photosurfaces(step, SurfaceOptions::default())
+            .unwrap()
+    });
     for (mesh, surface) in meshes.zip(surfaces) {
         let attributes = &mesh["primitives"][0]["attributes"];
         let numbers = |name: &str| file.numbers(&attributes[name]);
-        let object = stage
+        let object = placed
             .scene()
             .objects()
             .iter()
             .find(|object| object.name == surface.facts.object);
-        let moment = stage.scene().moment(surface.facts.step);
+        let moment = placed.scene().moment(surface.facts.step);
         let view = View::new(&moment, &object.unwrap().world_line());
         let [x, y, z] = ["_REST_X", "_REST_Y", "_REST_Z"].map(numbers);
         let (factors, times) = (numbers("_DOPPLER"), numbers("_EMISSION_TIME"));

@@ -8,13 +8,13 @@ use crate::common::refining::model;
 use crate::common::{Random, cases};
 use photosurface::{
     DVec3, Event, Export, Lorentz, MAX_RAPIDITY, Mesh, Object, Observer, PhotosurfaceMap, Place,
-    Precision, Scene, Source, Stage, Velocity, VelocityError, View, Wanted, WorldLine, WriteError,
-    load_models, write_glb,
+    PlacedScene, Precision, Scene, Source, SurfaceOptions, Velocity, VelocityError, View,
+    WorldLine, WriteError, load_models, write_glb,
 };
 use proptest::prelude::*;
 
 /// A scene with one mesh at rest at `place`; the observer at the origin.
-fn stage(mesh: &Mesh, place: DVec3, velocity: Velocity) -> Stage {
+fn placed(mesh: &Mesh, place: DVec3, velocity: Velocity) -> PlacedScene {
     let observer = Observer {
         velocity,
         ..Observer::default()
@@ -26,7 +26,7 @@ fn stage(mesh: &Mesh, place: DVec3, velocity: Velocity) -> Stage {
     };
     let scene = Scene::new(observer, vec![object]).expect("one object with a name");
     let (models, _) = load_models(&scene, ".".as_ref()).expect("nothing to be read");
-    Stage::new(scene, models).expect("one model an object")
+    PlacedScene::new(scene, models).expect("one model an object")
 }
 
 /// Triangles a photosurface is refined to, about: at the tip of a cone of light a tolerance of 1e-3 takes as many as
@@ -34,14 +34,14 @@ fn stage(mesh: &Mesh, place: DVec3, velocity: Velocity) -> Stage {
 const BUDGET: u64 = 400;
 
 /// The bytes of a file, or the one error.
-fn export(stage: Stage, subdivide: bool) -> Result<Vec<u8>, WriteError> {
-    let wanted = Wanted {
+fn export(placed: PlacedScene, subdivide: bool) -> Result<Vec<u8>, WriteError> {
+    let wanted = SurfaceOptions {
         subdivide,
-        ..Wanted::default()
+        ..SurfaceOptions::default()
     };
-    let (stage, _) = stage.within_budget(wanted, BUDGET);
-    let photosurfaces: Vec<_> = stage.photosurfaces(0, wanted).expect("a step").collect();
-    let scene = stage.facts();
+    let (placed, _) = placed.within_budget(wanted, BUDGET);
+    let photosurfaces: Vec<_> = placed.photosurfaces(0, wanted).expect("a step").collect();
+    let scene = placed.facts();
     let export = Export {
         scene: &scene,
         marker: None,
@@ -126,7 +126,7 @@ fn ten_thousand_files_are_finite_or_one_clear_error() {
                 let velocity = Velocity::from_rapidity(rapidity, direction).expect("valid");
                 // Of the directions two are refined, at every rapidity and distance: a file takes as long as 50 others.
                 let subdivide = matches!(number, 3 | 9);
-                match export(stage(&mesh, place, velocity), subdivide) {
+                match export(placed(&mesh, place, velocity), subdivide) {
                     Ok(bytes) => {
                         assert_finite(&bytes, &case);
                         written += 1;
@@ -182,7 +182,7 @@ fn degenerate_triangles_make_finite_files() {
                 for subdivide in [false, true] {
                     let velocity = Velocity::from_rapidity(rapidity, direction).expect("valid");
                     let case = format!("{name}, rapidity {rapidity}, {direction}");
-                    match export(stage(&triangle(corners), o, velocity), subdivide) {
+                    match export(placed(&triangle(corners), o, velocity), subdivide) {
                         Ok(bytes) => assert_finite(&bytes, &case),
                         Err(WriteError::Range { .. } | WriteError::TooSmall { .. }) => {
                             assert!(rapidity > 7.6, "{case}: refused");
@@ -201,9 +201,9 @@ fn the_condition_is_the_largest_stretch_at_a_vertex() {
     let velocity = Velocity::from_gamma(1000.0, DVec3::X).expect("valid");
     for (place, expected) in [(1.0, velocity.stretch()), (-1.0, 1.0)] {
         let mesh = triangle([1.0, 2.0, 3.0].map(|x| DVec3::X * (place * x)));
-        let stage = stage(&mesh, DVec3::ZERO, velocity);
-        let made = stage
-            .photosurfaces(0, Wanted::default())
+        let placed = placed(&mesh, DVec3::ZERO, velocity);
+        let made = placed
+            .photosurfaces(0, SurfaceOptions::default())
             .expect("a step")
             .next()
             .expect("one part");
@@ -219,7 +219,7 @@ fn the_condition_is_the_largest_stretch_at_a_vertex() {
 fn no_triangles_and_no_numbers_are_clear_errors() {
     for corners in [vec![], vec![DVec3::X]] {
         let empty = Mesh::new(corners, vec![]).expect("nothing wrong with it");
-        let error = export(stage(&empty, DVec3::X, Velocity::ZERO), true).expect_err("empty");
+        let error = export(placed(&empty, DVec3::X, Velocity::ZERO), true).expect_err("empty");
         assert!(matches!(error, WriteError::Empty(_)), "{error}");
     }
     for bad in [f64::NAN, f64::INFINITY] {
@@ -488,14 +488,14 @@ proptest! {
         corners in [nasty_vector(), nasty_vector(), nasty_vector()],
         velocity in nasty_velocity(),
     ) {
-        let wanted = Wanted { precision: Precision::Double, subdivide: false, ..Wanted::default() };
-        let stage = stage(&triangle(corners), DVec3::ZERO, velocity);
-        let made = stage.photosurfaces(0, wanted).unwrap().next().expect("one part");
+        let wanted = SurfaceOptions { precision: Precision::Double, subdivide: false, ..SurfaceOptions::default() };
+        let placed = placed(&triangle(corners), DVec3::ZERO, velocity);
+        let made = placed.photosurfaces(0, wanted).unwrap().next().expect("one part");
         for position in made.mesh.positions() {
             prop_assert!(!position.is_nan(), "{position}");
         }
         prop_assert!(made.facts.condition >= 1.0 && made.facts.condition.is_finite());
-        match export(stage, false) {
+        match export(placed, false) {
             Ok(bytes) => assert_finite(&bytes, "any triangle"),
             Err(error) => prop_assert!(
                 matches!(error, WriteError::Range { .. } | WriteError::Overflow { .. } | WriteError::TooSmall { .. }),

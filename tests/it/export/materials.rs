@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use crate::common::glb::{Glb, index};
 use photosurface::{
-    Export, Note, Object, Observer, Photosurface, Scene, Source, Stage, Wanted, read_model,
-    write_glb,
+    Export, Note, Object, Observer, Photosurface, PlacedScene, Scene, Source, SurfaceOptions,
+    read_model, write_glb,
 };
 use serde_json::{Value, json};
 
@@ -75,17 +75,17 @@ fn pass_through(name: &str) -> (Glb, Vec<String>) {
     let object = Object::new("it", Source::Model(Arc::new(model.clone())));
     let scene = Scene::new(Observer::default(), vec![object]).expect("one object");
     let scene = scene.with_steps(vec![0.0, 1.0]).expect("two steps");
-    let stage = Stage::new(scene, vec![model]).expect("one model an object");
-    let wanted = Wanted {
+    let placed = PlacedScene::new(scene, vec![model]).expect("one model an object");
+    let wanted = SurfaceOptions {
         subdivide: false,
-        ..Wanted::default()
+        ..SurfaceOptions::default()
     };
     let steps = 0..2;
     let photosurfaces: Vec<Photosurface> = steps
-        .flat_map(|step| stage.photosurfaces(step, wanted).expect("a step"))
+        .flat_map(|step| placed.photosurfaces(step, wanted).expect("a step"))
         .collect();
     let export = Export {
-        scene: &stage.facts(),
+        scene: &placed.facts(),
         marker: None,
         photosurfaces: &photosurfaces,
         playback: None,

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use photosurface::{
-    DVec3, Export, Model, Object, Observer, Photosurface, Scene, Source, Stage, Wanted,
-    read_gltf_bytes, read_model, write_glb, write_ply,
+    DVec3, Export, Model, Object, Observer, Photosurface, PlacedScene, Scene, Source,
+    SurfaceOptions, read_gltf_bytes, read_model, write_glb, write_ply,
 };
 use serde_json::{Value, json};
 
@@ -326,15 +326,17 @@ fn the_largest_index_of_a_type_is_the_vertex_of_that_number() {
 fn written(model: &Model) -> (Value, Vec<u8>, Vec<u8>) {
     let named = |name: &str| Object::new(name, Source::Model(Arc::new(model.clone())));
     let scene = Scene::new(Observer::default(), vec![named("one"), named("two")]);
-    let stage = Stage::new(
+    let placed = PlacedScene::new(
         scene.expect("two objects"),
         vec![model.clone(), model.clone()],
     )
     .expect("one model an object");
-    let photosurfaces: Vec<Photosurface> =
-        stage.photosurfaces(0, Wanted::default()).unwrap().collect();
+    let photosurfaces: Vec<Photosurface> = placed
+        .photosurfaces(0, SurfaceOptions::default())
+        .unwrap()
+        .collect();
     let export = Export {
-        scene: &stage.facts(),
+        scene: &placed.facts(),
         marker: None,
         photosurfaces: &photosurfaces,
         playback: None,

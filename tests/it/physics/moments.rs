@@ -2,8 +2,8 @@
 
 use photosurface::{
     Camera, Color, DAffine3, DMat3, DQuat, DVec3, Event, Lorentz, Moment, Picture, PictureOptions,
-    PictureSize, Projection, Scene, Scenery, Stage, Tolerance, Velocity, View, Viewpoint, Wanted,
-    WorldLine, load_models,
+    PictureSize, PlacedScene, Projection, Scene, Scenery, SurfaceOptions, Tolerance, Velocity,
+    View, Viewpoint, WorldLine, load_models,
 };
 use serde_json::json;
 
@@ -192,22 +192,22 @@ fn rays_agree_with_the_turned_photosurface() {
     let scene = Scene::from_json(&scene.to_string()).expect("a valid scene");
     let scene = scene.with_tolerance_for_all(Tolerance::degrees(0.01).expect("a fair angle"));
     let (models, _) = load_models(&scene, ".".as_ref()).expect("shapes");
-    let stage = Stage::new(scene, models).expect("one model an object");
+    let placed = PlacedScene::new(scene, models).expect("one model an object");
     let look = DVec3::new(0.0, 0.31, -0.95);
     let mut at_rest = Scenery::new();
-    for (object, parts) in stage.objects() {
+    for (object, parts) in placed.objects() {
         for (_, part) in parts {
             at_rest.add_at_rest(object, part);
         }
     }
     for turn in turns() {
-        let moment = stage.scene().moment(0).turned(turn);
+        let moment = placed.scene().moment(0).turned(turn);
         let back = DAffine3::from_quat(turn.inverse());
         let mut turned = Scenery::new();
-        for (surface, object) in stage
-            .photosurfaces(0, Wanted::default())
+        for (surface, object) in placed
+            .photosurfaces(0, SurfaceOptions::default())
             .expect("the first step")
-            .zip(stage.scene().objects())
+            .zip(placed.scene().objects())
         {
             turned.add_photosurface(
                 object,

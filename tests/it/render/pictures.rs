@@ -7,8 +7,8 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec2;
 use photosurface::{
-    Camera, Color, DVec3, Picture, PictureOptions, PictureSize, Projection, Scene, Scenery, Stage,
-    Tolerance, Viewpoint, Wanted, load_models,
+    Camera, Color, DVec3, Picture, PictureOptions, PictureSize, PlacedScene, Projection, Scene,
+    Scenery, SurfaceOptions, Tolerance, Viewpoint, load_models,
 };
 use serde_json::{Value, json};
 
@@ -21,31 +21,31 @@ const BARE: PictureOptions = PictureOptions {
     wireframe: None,
 };
 
-fn stage(scene: &Value, tolerance: Tolerance) -> Stage {
+fn placed(scene: &Value, tolerance: Tolerance) -> PlacedScene {
     let scene = Scene::from_json(&scene.to_string()).expect("a valid scene");
     let scene = scene.with_tolerance_for_all(tolerance);
     let (models, _) = load_models(&scene, ".".as_ref()).expect("shapes, and a fixture");
-    Stage::new(scene, models).expect("one model an object")
+    PlacedScene::new(scene, models).expect("one model an object")
 }
 
 /// What the observer sees at the first step, by rays.
-fn by_rays(stage: &Stage, camera: &Camera) -> Picture {
+fn by_rays(placed: &PlacedScene, camera: &Camera) -> Picture {
     let mut scenery = Scenery::new();
-    for (object, parts) in stage.objects() {
+    for (object, parts) in placed.objects() {
         for (_, part) in parts {
             scenery.add_at_rest(object, part);
         }
     }
-    take(stage, &scenery, camera)
+    take(placed, &scenery, camera)
 }
 
 /// What the observer sees at the first step, by photosurfaces; and how far off, in radians, a point of
 /// them may be seen, as certified for a tolerance that is an angle.
-fn by_meshes(stage: &Stage, camera: &Camera, wanted: Wanted) -> (Picture, f64) {
+fn by_meshes(placed: &PlacedScene, camera: &Camera, wanted: SurfaceOptions) -> (Picture, f64) {
     let mut scenery = Scenery::new();
     let mut angle = 0.0_f64;
-    for surface in stage.photosurfaces(0, wanted).expect("a step") {
-        let objects = stage.scene().objects().iter();
+    for surface in placed.photosurfaces(0, wanted).expect("a step") {
+        let objects = placed.scene().objects().iter();
         let object = objects
             .clone()
             .find(|object| object.name == surface.facts.object)
@@ -54,12 +54,12 @@ fn by_meshes(stage: &Stage, camera: &Camera, wanted: Wanted) -> (Picture, f64) {
         // In degrees, as the tolerance is.
         angle = angle.max(surface.facts.certificate.total.to_radians());
     }
-    (take(stage, &scenery, camera), angle)
+    (take(placed, &scenery, camera), angle)
 }
 
-fn take(stage: &Stage, scenery: &Scenery, camera: &Camera) -> Picture {
+fn take(placed: &PlacedScene, scenery: &Scenery, camera: &Camera) -> Picture {
     assert!(scenery.textures().missing().is_empty());
-    let moment = stage.scene().moment(0);
+    let moment = placed.scene().moment(0);
     let viewpoint = Viewpoint::Observer(&moment);
     scenery.picture(camera, viewpoint, BARE, &|| ())
 }
@@ -191,9 +191,9 @@ fn rays_and_photosurfaces_show_the_same_to_within_the_tolerance() {
         let mut counts = Vec::new();
         for asked in [8.0, 4.0, 2.0, 1.0, 0.5, 0.25] {
             let tolerance = Tolerance::degrees((asked / per_radian).to_degrees()).unwrap();
-            let stage = stage(&scene, tolerance);
-            let rays = by_rays(&stage, &camera);
-            let (meshes, angle) = by_meshes(&stage, &camera, Wanted::default());
+            let placed = placed(&scene, tolerance);
+            let rays = by_rays(&placed, &camera);
+            let (meshes, angle) = by_meshes(&placed, &camera, SurfaceOptions::default());
             let delta = angle * per_radian;
             let length = outline(&rays).len() as f64;
             let differ = |other: &Picture| {
@@ -224,9 +224,9 @@ fn rays_and_photosurfaces_show_the_same_to_within_the_tolerance() {
 fn a_wrong_velocity_is_seen() {
     let (_, mut scene, look, fov) = scenes().remove(0);
     let camera = pinhole(640, 480, fov, look);
-    let right = by_rays(&stage(&scene, Tolerance::default()), &camera);
+    let right = by_rays(&placed(&scene, Tolerance::default()), &camera);
     scene["observer"]["velocity"]["beta"] = json!(0.94);
-    let wrong = by_rays(&stage(&scene, Tolerance::default()), &camera);
+    let wrong = by_rays(&placed(&scene, Tolerance::default()), &camera);
     let differ = pixels(&right).filter(|&(x, y)| kind(&right, x, y) != kind(&wrong, x, y));
     let (differ, length) = (differ.count() as f64, outline(&right).len() as f64);
     // More than what the comparison above lets pass with a tolerance of a pixel.
@@ -279,8 +279,8 @@ fn a_passing_sphere_has_a_circle_for_an_outline() {
         let camera = pinhole(600, 600, fov, center);
         let pixel = 2.0 * (fov.to_radians() / 2.0).tan() / 600.0;
         let off = |scale| {
-            let stage = stage(&lone(beta, place, scale), Tolerance::default());
-            off_circle(&by_rays(&stage, &camera), &camera, center, half_angle)
+            let placed = placed(&lone(beta, place, scale), Tolerance::default());
+            off_circle(&by_rays(&placed, &camera), &camera, center, half_angle)
         };
         let sphere = off([1.0; 3]);
         println!(
@@ -310,8 +310,8 @@ fn a_sphere_far_off_axis_has_a_circle_for_an_outline_on_the_sky() {
     let camera = Camera::new(size, Projection::FullSky, DVec3::X).expect("a fair camera");
     let pixel = TAU / f64::from(width);
     let off = |scale| {
-        let stage = stage(&lone(beta, place, scale), Tolerance::default());
-        off_circle(&by_rays(&stage, &camera), &camera, DVec3::Z, half_angle)
+        let placed = placed(&lone(beta, place, scale), Tolerance::default());
+        off_circle(&by_rays(&placed, &camera), &camera, DVec3::Z, half_angle)
     };
     assert!(off([1.0; 3]) <= pixel / 2.0);
     assert!(off([0.95, 1.0, 1.0]) > pixel / 2.0);
@@ -347,7 +347,7 @@ fn the_sky_of_a_moving_observer_is_aberrated_by_the_half_angle() {
         });
         let size = PictureSize::new(360, 180).expect("a fair size");
         let camera = Camera::new(size, Projection::FullSky, DVec3::NEG_Z).expect("a fair camera");
-        let picture = by_rays(&stage(&scene, Tolerance::default()), &camera);
+        let picture = by_rays(&placed(&scene, Tolerance::default()), &camera);
         let (mut lit, mut wrong) = (0, 0);
         for (x, y) in pixels(&picture) {
             let place = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
@@ -379,9 +379,9 @@ fn rays_and_photosurfaces_are_shaded_alike() {
     let mut worst = Worst::new("shading, steps of 8 bits");
     for (name, scene, look, fov) in scenes() {
         let camera = pinhole(320, 240, fov, look);
-        let stage = stage(&scene, Tolerance::relative(1e-5).unwrap());
-        let rays = by_rays(&stage, &camera);
-        let (meshes, _) = by_meshes(&stage, &camera, Wanted::default());
+        let placed = placed(&scene, Tolerance::relative(1e-5).unwrap());
+        let rays = by_rays(&placed, &camera);
+        let (meshes, _) = by_meshes(&placed, &camera, SurfaceOptions::default());
         for _ in 0..20_000 {
             let x = random.between(1.0, 319.0) as u32;
             let y = random.between(1.0, 239.0) as u32;
@@ -405,10 +405,10 @@ fn rays_and_photosurfaces_are_shaded_alike() {
 fn pictures_are_the_same_for_any_number_of_threads() {
     let (_, scene, look, fov) = scenes().remove(4);
     let camera = pinhole(160, 120, fov, look);
-    let stage = stage(&scene, Tolerance::default());
+    let placed = placed(&scene, Tolerance::default());
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("a pool").install(|| by_rays(&stage, &camera))
+        pool.expect("a pool").install(|| by_rays(&placed, &camera))
     };
     assert_eq!(with(1), with(3));
 }
@@ -418,11 +418,11 @@ fn pictures_are_the_same_for_any_number_of_threads() {
 fn what_is_seen_nearer_hides_what_is_farther() {
     let (_, scene, look, fov) = scenes().remove(4);
     let camera = pinhole(320, 240, fov, look);
-    let both = by_rays(&stage(&scene, Tolerance::default()), &camera);
+    let both = by_rays(&placed(&scene, Tolerance::default()), &camera);
     let alone = |number: usize| {
         let mut scene = scene.clone();
         scene["objects"] = json!([scene["objects"][number]]);
-        by_rays(&stage(&scene, Tolerance::default()), &camera)
+        by_rays(&placed(&scene, Tolerance::default()), &camera)
     };
     let (sphere, cube) = (alone(0), alone(1));
     let mut shared = 0;

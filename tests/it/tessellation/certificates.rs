@@ -217,7 +217,7 @@ fn error_within_bound_within_tolerance() {
                 let tolerance = Tolerance::relative(10f64.powi(-exponent)).unwrap();
                 let sighting = Sighting::new(DVec3::new(0.0, 0.05, 0.1), velocity, tolerance);
                 let predicted = sighting
-                    .stage(Source::Model(model(std::slice::from_ref(&mesh)).into()))
+                    .placed(Source::Model(model(std::slice::from_ref(&mesh)).into()))
                     .predictions(sighting.wanted)[0];
                 assert!(predicted.reachable, "{name}, {sighting:?}");
                 let predicted = predicted.triangles;
@@ -503,11 +503,11 @@ fn a_looser_aim_makes_fewer_triangles_and_says_so() {
     let tight = sighting.of_one(&plate(0.2));
     let budget = tight.triangle_count() as u64 / 10;
     let source = Source::Model(model(&[plate(0.2)]).into());
-    let (stage, loosening) = sighting
-        .stage(source)
+    let (placed, loosening) = sighting
+        .placed(source)
         .within_budget(sighting.wanted, budget);
     assert!(loosening[0] > 10.0 && loosening[0] < 30.0, "{loosening:?}");
-    let loose = sighting.sighted(&stage).pop().expect("one part");
+    let loose = sighting.sighted(&placed).pop().expect("one part");
     assert!(loose.triangle_count() as u64 <= budget);
     let (tight_count, loose_count) = (tight.triangle_count() as f64, loose.triangle_count() as f64);
     assert!(loose_count > 0.03 * tight_count, "{loose_count}");

@@ -8,8 +8,8 @@ use std::sync::Arc;
 use crate::common::Random;
 use crate::common::refining::{Welded, mesh, model};
 use photosurface::{
-    Attributes, BUILT_IN_SCENES, DVec3, Mesh, Object, Observer, Photosurface, Place, Precision,
-    Scene, Source, Stage, Tolerance, Velocity, Wanted, load_models,
+    Attributes, BUILT_IN_SCENES, DVec3, Mesh, Object, Observer, Photosurface, Place, PlacedScene,
+    Precision, Scene, Source, SurfaceOptions, Tolerance, Velocity, load_models,
 };
 
 /// Rapidities where a chart of the sky holds a facet, where it begins to collapse, and the largest.
@@ -18,20 +18,20 @@ const RAPIDITIES: [f64; 11] = [
 ];
 const MOST_TRIANGLES: u64 = 20_000;
 
-fn wanted() -> Wanted {
-    Wanted {
+fn wanted() -> SurfaceOptions {
+    SurfaceOptions {
         attributes: Attributes {
             rest_position: true,
             ..Attributes::default()
         },
         precision: Precision::Double,
-        ..Wanted::default()
+        ..SurfaceOptions::default()
     }
 }
 
-fn stage(scene: Scene) -> Stage {
+fn placed(scene: Scene) -> PlacedScene {
     let (models, _) = load_models(&scene, ".".as_ref()).unwrap();
-    Stage::new(scene, models).expect("one model an object")
+    PlacedScene::new(scene, models).expect("one model an object")
 }
 
 fn rest_positions(surface: &Photosurface) -> &[DVec3] {
@@ -80,12 +80,12 @@ impl Extent {
 
 /// Checks all photosurfaces of all steps against the parts that they are made of; how many triangles were added.
 #[track_caller]
-fn assert_covering(stage: Stage, case: &str) -> usize {
-    let (stage, _) = stage.within_budget(wanted(), MOST_TRIANGLES);
+fn assert_covering(placed: PlacedScene, case: &str) -> usize {
+    let (placed, _) = placed.within_budget(wanted(), MOST_TRIANGLES);
     let mut added = 0;
-    for step in 0..stage.scene().steps().len() {
-        let surfaces: Vec<_> = stage.photosurfaces(step, wanted()).unwrap().collect();
-        for (object, parts) in stage.objects() {
+    for step in 0..placed.scene().steps().len() {
+        let surfaces: Vec<_> = placed.photosurfaces(step, wanted()).unwrap().collect();
+        for (object, parts) in placed.objects() {
             let before = Extent::of(
                 parts
                     .iter()
@@ -124,7 +124,7 @@ fn flat_built_in_scenes_are_covered_at_any_rapidity() {
             };
             let scene = scene.clone().with_observer(observer);
             let scene = scene.with_steps(vec![-5.0, 0.0, 5.0]).unwrap();
-            added += assert_covering(stage(scene), &format!("{name} at rapidity {rapidity}"));
+            added += assert_covering(placed(scene), &format!("{name} at rapidity {rapidity}"));
         }
         assert!(added > 1000, "{name}: only {added} triangles were added");
     }
@@ -159,7 +159,7 @@ fn lone_triangles_are_covered_from_any_distance() {
                         ..Observer::default()
                     };
                     let case = format!("{lone:?} from {place} at {velocity:?}");
-                    added += assert_covering(stage(scene_of(&lone, observer)), &case);
+                    added += assert_covering(placed(scene_of(&lone, observer)), &case);
                 }
             }
         }

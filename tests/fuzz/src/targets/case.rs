@@ -6,7 +6,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use photosurface::{Format, Scene, Stage, load_models};
+use photosurface::{Format, PlacedScene, Scene, load_models};
 use serde_json::{Value, json};
 
 use super::given::Given;
@@ -97,13 +97,13 @@ impl Case {
     }
 
     /// The scene with its geometry, if it is one that the program takes; its files go to `folder`.
-    pub fn stage(&self, folder: &Path) -> Option<Stage> {
+    pub fn placed(&self, folder: &Path) -> Option<PlacedScene> {
         let scene = Scene::from_json(&self.scene.to_string()).ok()?;
         if self.scene.to_string().contains(MESH) {
             std::fs::write(folder.join(MESH), &self.mesh).expect("a temporary folder takes a file");
         }
         let (models, _) = load_models(&scene, folder).ok()?;
-        Some(Stage::new(scene, models).expect("one model an object"))
+        Some(PlacedScene::new(scene, models).expect("one model an object"))
     }
 
     /// The flags of `photosurface export` that do the same.

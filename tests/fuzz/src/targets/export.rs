@@ -1,8 +1,8 @@
 //! The whole way to a file.
 
 use photosurface::{
-    Certificate, DVec3, Export, Format, GltfFile, GltfOutput, Photosurface, Playback, Precision,
-    Report, Source, Stage, Target, Wanted, WriteError, read_gltf_bytes, write_ply,
+    Certificate, DVec3, Export, Format, GltfFile, GltfOutput, Photosurface, PlacedScene, Playback,
+    Precision, Report, Source, SurfaceOptions, Target, WriteError, read_gltf_bytes, write_ply,
 };
 
 use super::case::Case;
@@ -13,19 +13,19 @@ use super::reading::check_message;
 pub fn export(bytes: &[u8]) {
     let case = Case::new(bytes);
     in_folder(|folder| {
-        let Some(stage) = case.stage(folder) else {
+        let Some(placed) = case.placed(folder) else {
             return;
         };
-        let scene = stage.scene();
+        let scene = placed.scene();
         let steps = scene.steps().len();
         let format = case.format;
-        if format.least_size(&stage, steps).is_err() {
+        if format.least_size(&placed, steps).is_err() {
             return;
         }
-        if let Err(error) = format.check_range(&stage) {
+        if let Err(error) = format.check_range(&placed) {
             return check_message(&error);
         }
-        let wanted = Wanted {
+        let wanted = SurfaceOptions {
             attributes: format.attributes(scene),
             subdivide: case.subdivide,
             precision: match format {
@@ -33,34 +33,39 @@ pub fn export(bytes: &[u8]) {
                 Format::Glb | Format::Gltf => Precision::Single,
             },
         };
-        let _ = stage.predictions(wanted);
-        let stage = match case.subdivide {
-            true => stage.within_budget(wanted, case.budget).0,
-            false => stage,
+        let _ = placed.predictions(wanted);
+        let placed = match case.subdivide {
+            true => placed.within_budget(wanted, case.budget).0,
+            false => placed,
         };
-        let playback = playback(&case, &stage, wanted);
+        let playback = playback(&case, &placed, wanted);
         let morphing = matches!(playback, Some(Playback::Morph { .. }));
         let made: Vec<Vec<Photosurface>> = match morphing {
-            true => stage.morphing(wanted).collect(),
+            true => placed.morphing(wanted).collect(),
             false => (0..steps)
-                .map(|step| stage.photosurfaces(step, wanted).expect("a step").collect())
+                .map(|step| {
+                    placed
+                        .photosurfaces(step, wanted)
+                        .expect("a step")
+                        .collect()
+                })
                 .collect(),
         };
         let facts = made.iter().flatten().map(|made| made.facts.clone());
         let report = Report {
-            scene: stage.facts(),
+            scene: placed.facts(),
             objects: facts.collect(),
             stages: vec![],
         };
         assert!(!report.to_json().is_empty());
         for photosurface in made.iter().flatten() {
             check_certificate(&photosurface.facts.certificate);
-            check_cover(&stage, photosurface);
+            check_cover(&placed, photosurface);
         }
         let written = match format {
-            Format::Ply => write_as_ply(&stage, &made),
-            Format::Glb => write_as_glb(&stage, &made, wanted, playback),
-            Format::Gltf => write_as_gltf(&stage, &made, wanted, playback, folder),
+            Format::Ply => write_as_ply(&placed, &made),
+            Format::Glb => write_as_glb(&placed, &made, wanted, playback),
+            Format::Gltf => write_as_gltf(&placed, &made, wanted, playback, folder),
         };
         if let Err(error) = written {
             check_message(&error);
@@ -68,9 +73,9 @@ pub fn export(bytes: &[u8]) {
     });
 }
 
-fn playback(case: &Case, stage: &Stage, wanted: Wanted) -> Option<Playback> {
+fn playback(case: &Case, placed: &PlacedScene, wanted: SurfaceOptions) -> Option<Playback> {
     let frames_per_second = 24.0;
-    let several = stage.scene().steps().len() > 1 && case.format != Format::Ply;
+    let several = placed.scene().steps().len() > 1 && case.format != Format::Ply;
     match case.animate.filter(|_| several)? {
         "morph" if !wanted.attributes.is_empty() => None,
         "morph" => Some(Playback::Morph { frames_per_second }),
@@ -98,9 +103,9 @@ fn check_certificate(certificate: &Certificate) {
 }
 
 /// The triangles that a mesh is refined to cover it, once: they have its area.
-fn check_cover(stage: &Stage, made: &Photosurface) {
+fn check_cover(placed: &PlacedScene, made: &Photosurface) {
     let facts = &made.facts;
-    let parts = stage.objects().filter(|(object, _)| {
+    let parts = placed.objects().filter(|(object, _)| {
         // Shapes are made as fine as they have to be, which changes their area.
         object.name == facts.object && matches!(object.source, Source::File(_))
     });
@@ -133,17 +138,17 @@ fn areas(places: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
     triangles.iter().map(area).sum()
 }
 
-fn write_as_ply(stage: &Stage, made: &[Vec<Photosurface>]) -> Result<(), WriteError> {
+fn write_as_ply(placed: &PlacedScene, made: &[Vec<Photosurface>]) -> Result<(), WriteError> {
     let photosurfaces: Vec<_> = made.iter().flatten().cloned().collect();
     let mut out = vec![];
     let export = Export {
-        scene: &stage.facts(),
-        marker: stage.marker(),
+        scene: &placed.facts(),
+        marker: placed.marker(),
         photosurfaces: &photosurfaces,
         playback: None,
     };
     write_ply(&export, &mut out)?;
-    let triangles = made_triangles(stage, made);
+    let triangles = made_triangles(placed, made);
     let header = out.windows(11).position(|text| text == b"end_header\n");
     let header = String::from_utf8_lossy(&out[..header.expect("a PLY has a header")]);
     assert!(
@@ -154,42 +159,42 @@ fn write_as_ply(stage: &Stage, made: &[Vec<Photosurface>]) -> Result<(), WriteEr
 }
 
 fn write_as_glb(
-    stage: &Stage,
+    placed: &PlacedScene,
     made: &[Vec<Photosurface>],
-    wanted: Wanted,
+    wanted: SurfaceOptions,
     playback: Option<Playback>,
 ) -> Result<(), WriteError> {
     let mut out = vec![];
     let output = GltfOutput::glb(Target::Stream(&mut out), 1);
-    fill(stage, made, wanted, playback, output)?;
-    check_reading(stage, made, playback, &out, "".as_ref());
+    fill(placed, made, wanted, playback, output)?;
+    check_reading(placed, made, playback, &out, "".as_ref());
     Ok(())
 }
 
 fn write_as_gltf(
-    stage: &Stage,
+    placed: &PlacedScene,
     made: &[Vec<Photosurface>],
-    wanted: Wanted,
+    wanted: SurfaceOptions,
     playback: Option<Playback>,
     folder: &std::path::Path,
 ) -> Result<(), WriteError> {
     let (mut out, mut data) = (vec![], vec![]);
     let output = GltfOutput::gltf("out.bin", &mut out, &mut data);
-    fill(stage, made, wanted, playback, output)?;
+    fill(placed, made, wanted, playback, output)?;
     std::fs::write(folder.join("out.bin"), data).expect("a temporary folder takes a file");
-    check_reading(stage, made, playback, &out, folder);
+    check_reading(placed, made, playback, &out, folder);
     Ok(())
 }
 
 fn fill(
-    stage: &Stage,
+    placed: &PlacedScene,
     made: &[Vec<Photosurface>],
-    wanted: Wanted,
+    wanted: SurfaceOptions,
     playback: Option<Playback>,
     output: GltfOutput<'_>,
 ) -> Result<(), WriteError> {
-    let marker = stage.marker();
-    let mut file = GltfFile::new(output, &stage.facts(), marker, wanted.attributes, playback)?;
+    let marker = placed.marker();
+    let mut file = GltfFile::new(output, &placed.facts(), marker, wanted.attributes, playback)?;
     match playback {
         Some(Playback::Morph { .. }) => made.iter().try_for_each(|part| file.add_morphing(part))?,
         _ => made.iter().flatten().try_for_each(|made| file.add(made))?,
@@ -199,7 +204,7 @@ fn fill(
 
 /// What was written is read again, whole.
 fn check_reading(
-    stage: &Stage,
+    placed: &PlacedScene,
     made: &[Vec<Photosurface>],
     playback: Option<Playback>,
     file: &[u8],
@@ -212,13 +217,13 @@ fn check_reading(
     }
     let (model, _) = read.expect("what is written can be read");
     let triangles = model.parts.iter().map(|part| part.mesh().triangles().len());
-    let (made, read) = (made_triangles(stage, made), triangles.sum::<usize>());
+    let (made, read) = (made_triangles(placed, made), triangles.sum::<usize>());
     assert_eq!(made, read, "triangles made and read");
 }
 
 /// How many triangles a file without animation has.
-fn made_triangles(stage: &Stage, made: &[Vec<Photosurface>]) -> usize {
+fn made_triangles(placed: &PlacedScene, made: &[Vec<Photosurface>]) -> usize {
     let made = made.iter().flatten().map(|made| &made.mesh);
-    let marker = stage.marker().map(|part| part.mesh());
+    let marker = placed.marker().map(|part| part.mesh());
     made.chain(marker).map(|mesh| mesh.triangles().len()).sum()
 }

@@ -1,8 +1,8 @@
 //! The whole way to a small picture.
 
 use photosurface::{
-    Camera, Color, PictureOptions, PictureSize, Precision, Projection, Scenery, Stage, Viewpoint,
-    Wanted,
+    Camera, Color, PictureOptions, PictureSize, PlacedScene, Precision, Projection, Scenery,
+    SurfaceOptions, Viewpoint,
 };
 
 use super::case::{Case, Picture};
@@ -13,14 +13,14 @@ use super::reading::check_message;
 pub fn render(bytes: &[u8]) {
     let case = Case::new(bytes);
     in_folder(|folder| {
-        let Some(stage) = case.stage(folder) else {
+        let Some(placed) = case.placed(folder) else {
             return;
         };
-        take(&case, stage);
+        take(&case, placed);
     });
 }
 
-fn take(case: &Case, stage: Stage) {
+fn take(case: &Case, placed: PlacedScene) {
     let Picture {
         size: [width, height],
         samples,
@@ -44,22 +44,22 @@ fn take(case: &Case, stage: Stage) {
         wireframe: wireframe.then_some(Color([0x2c, 0x3e, 0x50])),
         ..PictureOptions::default()
     };
-    let wanted = Wanted {
+    let wanted = SurfaceOptions {
         subdivide: case.subdivide,
         precision: Precision::Double,
-        ..Wanted::default()
+        ..SurfaceOptions::default()
     };
     let by_mesh = by_mesh || from.is_some();
-    let stage = match by_mesh && case.subdivide {
-        true => stage.within_budget(wanted, case.budget).0,
-        false => stage,
+    let placed = match by_mesh && case.subdivide {
+        true => placed.within_budget(wanted, case.budget).0,
+        false => placed,
     };
     let at_rest = match by_mesh {
         true => None,
-        false => Some(at_rest(&stage)),
+        false => Some(at_rest(&placed)),
     };
-    for step in 0..stage.scene().steps().len() {
-        let moment = stage.scene().moment(step);
+    for step in 0..placed.scene().steps().len() {
+        let moment = placed.scene().moment(step);
         let viewpoint = match from {
             Some(place) => Viewpoint::Outside(place.into()),
             None => Viewpoint::Observer(&moment),
@@ -68,7 +68,7 @@ fn take(case: &Case, stage: Stage) {
         let scenery = match &at_rest {
             Some(scenery) => scenery,
             None => {
-                seen = photosurfaces(&stage, step, wanted);
+                seen = photosurfaces(&placed, step, wanted);
                 &seen
             }
         };
@@ -79,9 +79,9 @@ fn take(case: &Case, stage: Stage) {
     }
 }
 
-fn at_rest(stage: &Stage) -> Scenery {
+fn at_rest(placed: &PlacedScene) -> Scenery {
     let mut scenery = Scenery::new();
-    for (object, parts) in stage.objects() {
+    for (object, parts) in placed.objects() {
         for (_, part) in parts {
             scenery.add_at_rest(object, part);
         }
@@ -89,13 +89,13 @@ fn at_rest(stage: &Stage) -> Scenery {
     scenery
 }
 
-fn photosurfaces(stage: &Stage, step: usize, wanted: Wanted) -> Scenery {
+fn photosurfaces(placed: &PlacedScene, step: usize, wanted: SurfaceOptions) -> Scenery {
     let mut scenery = Scenery::new();
-    if let Some(marker) = stage.marker() {
+    if let Some(marker) = placed.marker() {
         scenery.add_plain(marker);
     }
-    for surface in stage.photosurfaces(step, wanted).expect("a step") {
-        let mut objects = stage.scene().objects().iter();
+    for surface in placed.photosurfaces(step, wanted).expect("a step") {
+        let mut objects = placed.scene().objects().iter();
         let object = objects
             .find(|object| object.name == surface.facts.object)
             .expect("a photosurface is of an object of its scene");

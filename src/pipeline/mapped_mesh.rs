@@ -42,12 +42,12 @@ impl VertexData {
 
 /// A mesh as it is seen, and what all its vertices have in common.
 #[derive(Clone, Debug)]
-pub(super) struct Seen {
+pub(super) struct MappedMesh {
     pub(super) mesh: Mesh,
     pub(super) extremes: Extremes,
 }
 
-impl Seen {
+impl MappedMesh {
     /// Every vertex of a mesh at rest mapped, with its normal and its tangent.
     pub(super) fn new(view: &View, rest: &Mesh) -> Self {
         let (positions, normals, extremes) = places(view, rest);

@@ -23,7 +23,7 @@ use crate::spacetime::{Lorentz, Moment, WorldLine, unit};
 /// hits after the distance `r l`, the thing is seen at the distance `l`: of several objects in
 /// different motion the one with the smallest `l` hides the others. `1 / r` is the Doppler factor.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sight {
+pub(super) struct Aberration {
     /// The observer's place in the rest frame.
     observer_rest: DVec3,
     /// The observer's direction of motion in the rest frame.
@@ -62,7 +62,7 @@ impl RestRay {
     }
 }
 
-impl Sight {
+impl Aberration {
     /// How the observer of `moment` sees what moves along with `object`.
     pub(super) fn new(moment: &Moment, object: &WorldLine) -> Self {
         let rest_to_observer = moment.rest_to_observer(object.velocity);
@@ -151,7 +151,7 @@ impl Sight {
     }
 }
 
-/// The kernel of [`Sight`]: `s_across`, `v_par` and `r`.
+/// The kernel of [`Aberration`]: `s_across`, `v_par` and `r`.
 struct Light {
     across: DVec3,
     par: f64,
@@ -191,9 +191,9 @@ mod tests {
                 let seen_from = line(0.5, DVec3::new(1.0, 2.0, -3.0), observer);
                 let thing = line(0.0, DVec3::new(0.25, -1.0, 2.0), object);
                 let turn = DQuat::from_rotation_arc(DVec3::Z, unit(other_way).unwrap());
-                let sight = Sight::new(&seen_from.moment(1.5).turned(turn), &thing);
+                let aberration = Aberration::new(&seen_from.moment(1.5).turned(turn), &thing);
                 for seen in directions() {
-                    let ray = sight.ray(seen);
+                    let ray = aberration.ray(seen);
                     let distance = 3.0;
                     let to_scene = Lorentz::boost(observer.reversed());
                     let emission = seen_from.at(1.5)
@@ -214,9 +214,9 @@ mod tests {
             let velocity = Velocity::from_rapidity(rapidity, DVec3::NEG_Z).unwrap();
             let observer = line(0.0, DVec3::ZERO, velocity);
             let thing = line(0.0, DVec3::ZERO, Velocity::ZERO);
-            let sight = Sight::new(&observer.moment(0.0), &thing);
+            let aberration = Aberration::new(&observer.moment(0.0), &thing);
             for seen in directions() {
-                let ray = sight.ray(seen);
+                let ray = aberration.ray(seen);
                 assert!(ray.stretch > 0.0 && ray.stretch.is_finite());
                 assert!((ray.direction.length() - 1.0).abs() < 1e-15);
                 let half = |v: DVec3| v.x.hypot(v.y).atan2(-v.z) / 2.0;
@@ -239,7 +239,7 @@ mod tests {
         let velocity = Velocity::from_beta(0.8, DVec3::new(0.2, -1.0, 0.4)).unwrap();
         let other = Velocity::from_beta(0.6, DVec3::X).unwrap();
         let turn = DQuat::from_rotation_x(1.3);
-        let sight = Sight::new(
+        let aberration = Aberration::new(
             &line(0.0, DVec3::ZERO, velocity).moment(0.0).turned(turn),
             &line(0.0, DVec3::Y, other),
         );
@@ -249,14 +249,14 @@ mod tests {
             let corners = [DVec3::ZERO, u + 0.3 * seen, v - 0.8 * seen].map(|offset| {
                 let place = seen + 1e-5 * offset;
                 let distance = place.length();
-                let ray = sight.ray(place / distance);
+                let ray = aberration.ray(place / distance);
                 (place, ray.direction * (ray.stretch * distance))
             });
             let normal = |k: fn(&(DVec3, DVec3)) -> DVec3| {
                 let [a, b, c] = [k(&corners[0]), k(&corners[1]), k(&corners[2])];
                 (b - a).cross(c - a).normalize()
             };
-            let found = sight.normal_at_rest(normal(|c| c.0), seen).unwrap();
+            let found = aberration.normal_at_rest(normal(|c| c.0), seen).unwrap();
             // Of second order in 1e-5, times the square of a Doppler factor of at most 8.
             assert!(found.distance(normal(|c| c.1)) < 1e-3, "{seen}");
         }

@@ -6,11 +6,11 @@ use glam::DVec3;
 use serde_json::Value;
 
 use super::facts::{Facts, SceneFacts};
+use super::mapped_mesh::VertexData;
 use super::names::{self, UniqueNames, step_label};
-use super::placed::{Placed, Shaped, triangle_count};
+use super::placed_object::{PlacedObject, Shaped, triangle_count};
 use super::plan::{Plan, Surface, Unrefined};
-use super::seen::VertexData;
-use super::{Photosurface, StageError, Wanted};
+use super::{Photosurface, PlacedSceneError, SurfaceOptions};
 use crate::light_cone::View;
 use crate::material::{Model, Part};
 use crate::scene::{MarkerRadius, Object, Scene};
@@ -21,52 +21,52 @@ use crate::spacetime::Velocity;
 const MARKER_NAME: &str = "observer";
 const MARKER_RESOLUTION: u32 = 24;
 
-/// A scene with the geometry of its objects, placed in their rest frames: all that photosurfaces need.
+/// A scene with the geometry of its objects, placed_object in their rest frames: all that photosurfaces need.
 ///
 /// # Example
 ///
 /// ```
-/// use photosurface::{Scene, Stage, Wanted, load_models};
+/// use photosurface::{Scene, PlacedScene, SurfaceOptions, load_models};
 ///
 /// let scene = Scene::from_json(
 ///     r#"{ "observer": { "velocity": { "beta": 0.8 } },
 ///          "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1 } }, "position": [0, 0, -5] } ] }"#,
 /// )?;
 /// let (models, _) = load_models(&scene, ".".as_ref())?;
-/// let stage = Stage::new(scene, models)?;
-/// let ball = stage.photosurfaces(0, Wanted::default())?.next().expect("one object, one photosurface");
+/// let placed = PlacedScene::new(scene, models)?;
+/// let ball = placed.photosurfaces(0, SurfaceOptions::default())?.next().expect("one object, one photosurface");
 /// // Its centre, 5 ahead, is seen exp(atanh(0.8)) = 3 times as far away.
 /// let (low, high) = ball.mesh.bounds().expect("a sphere has vertices");
 /// assert!(low.z < -15.0 && high.z > -15.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Stage {
+pub struct PlacedScene {
     pub(super) scene: Scene,
     pub(super) marker: Option<Part>,
     /// For every object of the scene.
-    pub(super) objects: Vec<Placed>,
+    pub(super) objects: Vec<PlacedObject>,
     /// What the source of each says of itself.
     pub(super) origins: Vec<Option<Arc<Value>>>,
 }
 
-impl Stage {
+impl PlacedScene {
     /// Places one model for each object of `scene`, in their order, in the objects' rest frames.
     ///
     /// # Errors
     ///
     /// Not as many models as objects, or a mesh with a vertex that is not finite.
-    pub fn new(scene: Scene, models: Vec<Model>) -> Result<Self, StageError> {
+    pub fn new(scene: Scene, models: Vec<Model>) -> Result<Self, PlacedSceneError> {
         let objects = scene.objects();
         if objects.len() != models.len() {
-            return Err(StageError::Models {
+            return Err(PlacedSceneError::Models {
                 objects: objects.len(),
                 models: models.len(),
             });
         }
         for (object, model) in objects.iter().zip(&models) {
             if let Some(part) = model.parts.iter().find(|part| !part.mesh().is_finite()) {
-                return Err(StageError::NotFinite {
+                return Err(PlacedSceneError::NotFinite {
                     object: object.name.clone(),
                     part: part.name.clone(),
                 });
@@ -87,7 +87,7 @@ impl Stage {
             });
             let parts: Vec<(String, Part)> = parts.collect();
             let shaped = Shaped::of(object);
-            objects.push(Placed {
+            objects.push(PlacedObject {
                 source_triangles: match &shaped {
                     Some(shaped) => shaped.fewest_triangles(&parts),
                     None => triangle_count(&parts),
@@ -118,10 +118,11 @@ impl Stage {
 
     /// Each object with its parts in its rest frame and their names in files, in the order of the scene.
     pub fn objects(&self) -> impl Iterator<Item = (&Object, &[(String, Part)])> {
-        self.scene
-            .objects()
-            .iter()
-            .zip(self.objects.iter().map(|placed| placed.parts.as_slice()))
+        self.scene.objects().iter().zip(
+            self.objects
+                .iter()
+                .map(|placed_object| placed_object.parts.as_slice()),
+        )
     }
 
     /// The names of parts that have characters which programs that read files break, each with what it is in files.
@@ -160,15 +161,15 @@ impl Stage {
     pub fn photosurfaces(
         &self,
         step: usize,
-        wanted: Wanted,
-    ) -> Result<impl Iterator<Item = Photosurface>, StageError> {
+        wanted: SurfaceOptions,
+    ) -> Result<impl Iterator<Item = Photosurface>, PlacedSceneError> {
         let steps = self.scene.steps().len();
         if step >= steps {
-            return Err(StageError::Step { step, steps });
+            return Err(PlacedSceneError::Step { step, steps });
         }
         let objects = self.scene.objects().iter().zip(&self.objects);
-        let made = objects.flat_map(move |(object, placed)| {
-            let plan = self.plan(object, placed, step, wanted);
+        let made = objects.flat_map(move |(object, placed_object)| {
+            let plan = self.plan(object, placed_object, step, wanted);
             let view = *plan.view();
             let surfaces = plan.carry_out(wanted);
             surfaces
@@ -182,10 +183,12 @@ impl Stage {
     pub(crate) fn unrefined(
         &self,
         step: usize,
-        wanted: Wanted,
+        wanted: SurfaceOptions,
     ) -> impl Iterator<Item = Unrefined<'_>> {
         let objects = self.scene.objects().iter().zip(&self.objects);
-        objects.map(move |(object, placed)| self.plan(object, placed, step, wanted).unrefined())
+        objects.map(move |(object, placed_object)| {
+            self.plan(object, placed_object, step, wanted).unrefined()
+        })
     }
 
     /// Whether all that is seen at one step is well within the range of `f32`, so that nothing can overflow or
@@ -212,13 +215,19 @@ impl Stage {
     pub(super) fn plan<'a>(
         &self,
         object: &Object,
-        placed: &'a Placed,
+        placed_object: &'a PlacedObject,
         step: usize,
-        wanted: Wanted,
+        wanted: SurfaceOptions,
     ) -> Plan<'a> {
         let view = self.view(object, step);
         let tolerance = self.scene.tolerance(object);
-        Plan::new(placed, view, tolerance, wanted, placed.granted(step))
+        Plan::new(
+            placed_object,
+            view,
+            tolerance,
+            wanted,
+            placed_object.granted(step),
+        )
     }
 
     pub(super) fn photosurface(
@@ -227,7 +236,7 @@ impl Stage {
         step: usize,
         view: &View,
         surface: Surface<'_>,
-        wanted: Wanted,
+        wanted: SurfaceOptions,
     ) -> Photosurface {
         let steps = self.scene.steps();
         let relative = view.relative_velocity();

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec2, DVec3};
 
 /// How a shape that is given in coordinates of its own is turned, stretched and moved.
-pub(super) struct Placed {
+pub(super) struct ShapePlacement {
     to_model: DAffine3,
     /// Centre and radius of a ball around it.
     around: (DVec3, f64),
@@ -17,7 +17,7 @@ pub(super) struct SmoothHit {
     pub(super) texture: DVec2,
 }
 
-impl Placed {
+impl ShapePlacement {
     /// A shape that is within `radius` of its origin.
     pub(super) fn new(radius: f64, model_to_rest: DAffine3) -> Self {
         let stretch = model_to_rest.matrix3;

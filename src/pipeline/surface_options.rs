@@ -5,7 +5,7 @@ use crate::tessellate::Precision;
 
 /// What is wanted of photosurfaces beside their shape, and how much may be spent.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wanted {
+pub struct SurfaceOptions {
     /// What is to be known of every vertex.
     pub attributes: Attributes,
     /// Whether meshes are refined until they are within the tolerance; if not, every vertex stays what it is and
@@ -15,7 +15,7 @@ pub struct Wanted {
     pub precision: Precision,
 }
 
-impl Default for Wanted {
+impl Default for SurfaceOptions {
     /// Meshes within the tolerance, for glTF, and nothing else.
     fn default() -> Self {
         Self {

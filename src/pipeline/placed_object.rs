@@ -13,7 +13,7 @@ const COARSER: f64 = 1.1;
 
 /// An object's parts in its rest frame.
 #[derive(Clone, Debug)]
-pub(super) struct Placed {
+pub(super) struct PlacedObject {
     /// Each with its name in files.
     pub(super) parts: Vec<(String, Part)>,
     /// Where they are those of a shape.
@@ -33,7 +33,7 @@ pub(super) struct Shaped {
     pub(super) appearance: Appearance,
     pub(super) model_to_rest: DAffine3,
     pub(super) largest_scale: f64,
-    /// Of its facets as they were placed from the curved surface, at rest.
+    /// Of its facets as they were placed_object from the curved surface, at rest.
     pub(super) deviation: f64,
 }
 
@@ -46,7 +46,7 @@ pub(super) struct Granted {
     pub(super) together: u64,
 }
 
-impl Placed {
+impl PlacedObject {
     /// How many more there may be at a step.
     pub(super) fn granted(&self, step: usize) -> u64 {
         let granted = self.granted.as_ref();
