@@ -36,7 +36,12 @@ mod write;
 
 pub use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4, Vec2, Vec4};
 
-pub use jobs::{Cancelled, FileFindings, LoadError, Progress, load_models};
+pub use jobs::{
+    Cancelled, DEFAULT_MAX_TRIANGLES, ExportError, ExportLevel, ExportSettings, Exported,
+    FileFindings, Fitted, FittedExport, InputError, LoadError, MAX_SCENE_BYTES, OutputError,
+    Progress, SceneTextError, Tally, check_outputs, export, export_levels, file_for_each_step,
+    levels_of_detail, load_models, scene_from_bytes, stand_off, with_suffix, write_report,
+};
 pub use light_cone::{PhotosurfaceMap, View};
 pub use material::{
     AlphaMode, Image, Material, MaterialError, Model, Part, PictureError, Texture, Wrap,

@@ -1,18 +1,18 @@
 //! Flags that say how accurate the result is to be, and what that may cost.
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, bail};
 use clap::Args;
 use photosurface::{
-    Facts, Format, PlacedScene, Precision, Prediction, Scene, SurfaceOptions, Tolerance,
+    DEFAULT_MAX_TRIANGLES, Fitted, Format, PlacedScene, Precision, Prediction, Scene,
+    SurfaceOptions, Tally, Tolerance, levels_of_detail,
 };
 
 use super::args::{Given, whole_number};
+use super::export::in_words_of_flags;
 use super::messages::{Verbosity, grouped};
 
 /// Of more objects than this only so many are named.
 const NAMED: usize = 4;
-
-const MOST_TRIANGLES: u64 = 20_000_000;
 
 /// How accurate the result is to be, and what that may cost.
 #[derive(Debug, Args)]
@@ -44,26 +44,17 @@ pub(super) struct DetailArgs {
 }
 
 impl DetailArgs {
-    /// The scene at each level of detail, with what to add to the names of files.
-    pub(super) fn levels(
-        &self,
-        accuracy: &AccuracyArgs,
-        scene: Scene,
-    ) -> anyhow::Result<Vec<(String, Scene)>> {
-        if !self.lod.is_empty() {
-            for (level, tolerance) in self.lod.iter().enumerate() {
-                let twice = self.lod[..level].contains(tolerance);
-                ensure!(!twice, "--lod names the tolerance {tolerance} twice");
-            }
-            let level = |(level, tolerance): (usize, &Tolerance)| {
-                (
-                    format!("_lod{level}"),
-                    scene.clone().with_tolerance_for_all(*tolerance),
-                )
-            };
-            return Ok(self.lod.iter().enumerate().map(level).collect());
+    /// The placed scene at each level of detail.
+    pub(super) fn levels(&self, placed: PlacedScene) -> anyhow::Result<Vec<PlacedScene>> {
+        match self.lod.as_slice() {
+            [] => Ok(vec![placed]),
+            tolerances => levels_of_detail(&placed, tolerances).map_err(in_words_of_flags),
         }
-        Ok(vec![(String::new(), accuracy.scene(scene))])
+    }
+
+    /// The tolerances of several levels of detail; none for one level with those of the scene.
+    pub(super) fn tolerances(&self) -> &[Tolerance] {
+        &self.lod
     }
 
     /// How many levels of detail there are.
@@ -90,61 +81,63 @@ impl AccuracyArgs {
         ]
     }
 
-    fn max_triangles(&self) -> u64 {
-        self.max_triangles.unwrap_or(MOST_TRIANGLES)
+    /// Whether meshes are refined.
+    pub(super) fn subdivides(&self) -> bool {
+        !self.no_subdivide
+    }
+
+    pub(super) fn max_triangles(&self) -> u64 {
+        self.max_triangles.unwrap_or(DEFAULT_MAX_TRIANGLES)
     }
 
     /// What is wanted of the photosurfaces of a placed scene in a file.
     pub(super) fn wanted_in(&self, format: Format, scene: &Scene) -> SurfaceOptions {
-        let precision = match format {
-            Format::Ply => Precision::Double,
-            Format::Glb | Format::Gltf => Precision::Single,
-        };
         SurfaceOptions {
-            attributes: format.attributes(scene),
-            ..self.wanted(precision)
+            subdivide: self.subdivides(),
+            ..format.surface_options(scene)
         }
     }
 
-    /// What is wanted of the photosurfaces of a placed scene.
+    /// What is wanted of the photosurfaces of a placed scene in pictures.
     pub(super) fn wanted(&self, precision: Precision) -> SurfaceOptions {
         SurfaceOptions {
-            subdivide: !self.no_subdivide,
+            subdivide: self.subdivides(),
             precision,
             ..SurfaceOptions::default()
         }
     }
 
-    /// The placed scene with aims that are within the budget, and what it will take; tells what the tolerance needs.
+    /// The placed scene with aims that are within the budget; tells what the tolerances need.
     pub(super) fn within_budget(
         &self,
         placed: PlacedScene,
         wanted: SurfaceOptions,
         verbosity: Verbosity,
-    ) -> (PlacedScene, Vec<Prediction>) {
-        let predictions = placed.predictions(wanted);
-        let needed = total(&predictions);
+    ) -> Fitted {
+        let fitted = Fitted::new(placed, wanted, self.max_triangles());
+        self.tell_fitted(&fitted, verbosity);
+        fitted
+    }
+
+    /// Tells what the tolerances need, and which ones the budget leaves room for.
+    pub(super) fn tell_fitted(&self, fitted: &Fitted, verbosity: Verbosity) {
+        let needed = total(&fitted.needed);
         verbosity.detail(format_args!("about {needed}"));
-        let (placed, loosening) = placed.within_budget(wanted, self.max_triangles());
+        let Fitted {
+            predictions,
+            loosening,
+            ..
+        } = fitted;
         if loosening.iter().all(|&times| times == 1.0) {
-            return (placed, predictions);
+            return;
         }
-        let scene = placed.scene();
-        let loosened = scene.objects().iter().zip(&loosening);
-        let loosened: Vec<_> = loosened
-            .filter(|&(_, &times)| times > 1.0)
-            .map(|(object, &times)| {
-                let fitting = scene.tolerance(object).times(times);
-                (&object.name, fitting.to_string())
-            })
+        let loosened: Vec<_> = fitted
+            .loosened()
+            .map(|(name, fitting)| (name, fitting.to_string()))
             .collect();
-        let mut predictions = placed.predictions(wanted);
-        for (prediction, times) in predictions.iter_mut().zip(&loosening) {
-            prediction.reachable &= *times == 1.0;
-        }
         let advice = match &loosened[..] {
             _ if loosening.contains(&f64::INFINITY)
-                || predicted(&predictions) > self.max_triangles() as f64 =>
+                || predicted(predictions) > self.max_triangles() as f64 =>
             {
                 "no tolerance near it would fit".to_owned()
             }
@@ -165,12 +158,6 @@ impl AccuracyArgs {
             "the tolerance needs about {needed}, more than --max-triangles {} leaves room for; {advice}",
             grouped(self.max_triangles() as usize),
         ));
-        (placed, predictions)
-    }
-
-    /// Whether, by predictions, [`AccuracyArgs::is_kept`] will say yes.
-    pub(super) fn will_be_kept(&self, predictions: &[Prediction]) -> bool {
-        predictions.iter().all(|prediction| prediction.reachable)
     }
 
     /// Says so where a source alone has more triangles than the budget.
@@ -190,7 +177,7 @@ impl AccuracyArgs {
     /// say what is proven.
     pub(super) fn is_kept(&self, made: &Tally, verbosity: Verbosity) -> bool {
         self.tell_beyond_budget(made.triangles as f64, verbosity);
-        made.all_certified(verbosity)
+        all_certified(made, verbosity)
     }
 }
 
@@ -215,60 +202,31 @@ pub(super) fn predicted(predictions: &[Prediction]) -> f64 {
     triangles.sum()
 }
 
-/// What was made, as far as it is told in the end.
-#[derive(Debug, Default)]
-pub(super) struct Tally {
-    pub(super) photosurfaces: usize,
-    /// Those in files, in which all steps may share a mesh.
-    pub(super) triangles: usize,
-    /// How many are not within their tolerances.
-    open: usize,
-    /// The one of those that is farthest from what was asked for.
-    worst: Option<Facts>,
-}
-
-impl Tally {
-    pub(super) fn add(&mut self, facts: &Facts, triangles: usize) {
-        self.photosurfaces += 1;
-        self.triangles += triangles;
-        if facts.certificate.complete {
-            return;
+/// Says which photosurfaces are not certified; `true` if all are.
+fn all_certified(made: &Tally, verbosity: Verbosity) -> bool {
+    let Some(worst) = &made.worst else {
+        return true;
+    };
+    let certificate = &worst.certificate;
+    verbosity.note(format_args!(
+        "{} of {} photosurfaces are not within the tolerance; the worst, against what \
+         was asked for, is \"{}\", proven within {:.3e} where that was {:.3e} ({}: gap {:.3e}, curvature {:.3e}, \
+         rounding {:.3e}){}",
+        made.uncertified,
+        made.photosurfaces,
+        worst.name,
+        certificate.total,
+        certificate.tolerance,
+        certificate.unit,
+        certificate.gap,
+        certificate.curvature,
+        certificate.rounding,
+        match certificate.tolerance {
+            0.0 => "; it has no extent that a tolerance could be a fraction of: give a length, such as --tolerance abs:0.01",
+            _ => "",
         }
-        self.open += 1;
-        let excess = |facts: &Facts| facts.certificate.total / facts.certificate.tolerance;
-        // Written so that NaN is worse than anything.
-        let better = |worst: &Facts| excess(facts) <= excess(worst);
-        if !self.worst.as_ref().is_some_and(better) {
-            self.worst = Some(facts.clone());
-        }
-    }
-
-    /// Says which photosurfaces are not certified; `true` if all are.
-    fn all_certified(&self, verbosity: Verbosity) -> bool {
-        let Some(worst) = &self.worst else {
-            return true;
-        };
-        let certificate = &worst.certificate;
-        verbosity.note(format_args!(
-            "{} of {} photosurfaces are not within the tolerance; the worst, against what \
-             was asked for, is \"{}\", proven within {:.3e} where that was {:.3e} ({}: gap {:.3e}, curvature {:.3e}, \
-             rounding {:.3e}){}",
-            self.open,
-            self.photosurfaces,
-            worst.name,
-            certificate.total,
-            certificate.tolerance,
-            certificate.unit,
-            certificate.gap,
-            certificate.curvature,
-            certificate.rounding,
-            match certificate.tolerance {
-                0.0 => "; it has no extent that a tolerance could be a fraction of: give a length, such as --tolerance abs:0.01",
-                _ => "",
-            }
-        ));
-        false
-    }
+    ));
+    false
 }
 
 /// `1e-3`, `abs:0.01` or `deg:0.02`
@@ -298,7 +256,7 @@ mod tests {
             .render_long_help()
             .to_string();
         assert!(
-            help.contains(&format!("[default: {MOST_TRIANGLES}]")),
+            help.contains(&format!("[default: {DEFAULT_MAX_TRIANGLES}]")),
             "{help}"
         );
     }

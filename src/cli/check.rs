@@ -2,7 +2,6 @@
 
 use std::io::Write;
 
-use anyhow::Context;
 use photosurface::{Format, PlacedScene, Prediction};
 
 use super::Status;
@@ -10,7 +9,7 @@ use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, predicted, total
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print_if_open, shown};
-use super::output::{FileFormat, check_range};
+use super::output::{FileFormat, or_ply};
 
 /// Validate a scene or a mesh, and say what an export would make
 ///
@@ -47,27 +46,29 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
     let mut status = Status::Done;
     let verbosity = Verbosity::new(args.quiet, args.verbose);
     let input = Input::read(&args.input, &args.observer, verbosity)?;
-    for (_, scene) in args.detail.levels(&args.accuracy, input.scene)? {
-        let placed = PlacedScene::new(scene, input.models.clone())?;
-        for (name, part) in placed.objects().flat_map(|(_, parts)| parts) {
-            verbosity.detail(format_args!(
-                "{name}: {}, {}",
-                counted(part.mesh().positions().len(), "vertex"),
-                counted(part.mesh().triangles().len(), "triangle")
-            ));
-        }
-        if let Err(error) = format.least_size(&placed, placed.scene().steps().len()) {
-            verbosity.note(format_args!("{}: {error}", input.place));
-            status = Status::NotCertified;
-        }
-        let range = check_range(format, &placed);
-        range.with_context(|| input.place.clone())?;
+    let scene = args.accuracy.scene(input.scene);
+    let placed = PlacedScene::new(scene, input.models)?;
+    for (name, part) in placed.objects().flat_map(|(_, parts)| parts) {
+        verbosity.detail(format_args!(
+            "{name}: {}, {}",
+            counted(part.mesh().positions().len(), "vertex"),
+            counted(part.mesh().triangles().len(), "triangle")
+        ));
+    }
+    if let Err(error) = format.least_size(&placed, placed.scene().steps().len()) {
+        verbosity.note(format_args!("{}: {error}", input.place));
+        status = Status::NotCertified;
+    }
+    let range = format.check_range(&placed);
+    range.map_err(|error| or_ply(error, &placed).context(input.place.clone()))?;
+    for placed in args.detail.levels(placed)? {
         let wanted = args.accuracy.wanted_in(format, placed.scene());
-        let (placed, predictions) = args.accuracy.within_budget(placed, wanted, verbosity);
-        print_if_open(|out| table(&placed, &predictions, out))?;
+        let fitted = args.accuracy.within_budget(placed, wanted, verbosity);
+        let predictions = &fitted.predictions;
+        print_if_open(|out| table(&fitted.placed, predictions, out))?;
         args.accuracy
-            .tell_beyond_budget(predicted(&predictions), verbosity);
-        if !args.accuracy.will_be_kept(&predictions) {
+            .tell_beyond_budget(predicted(predictions), verbosity);
+        if !predictions.iter().all(|prediction| prediction.reachable) {
             status = Status::NotCertified;
         }
     }

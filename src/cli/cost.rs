@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail, ensure};
 use photosurface::{
     Camera, CameraError, CostSettings, CostStudy, DVec3, Made, PictureSize, PlacedScene, PlotSize,
-    Projection, RaySettings, StudyError, Tolerance, write_whole,
+    Projection, RaySettings, StudyError, Tolerance, with_suffix, write_whole,
 };
 
 use super::accuracy::tolerance;
@@ -15,11 +15,11 @@ use super::camera::{OBSERVER_FOV, fitting_fov, middle_of_sky, rough_places, samp
 use super::cost_tables::{csv_of_meshes, csv_of_rays, tables_of};
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, grouped, print, print_if_open};
-use super::output::{check_destinations, is_stdout, progress_bar, with_suffix};
+use super::output::{Bar, check_destinations, is_stdout};
 
 /// Show what accuracy costs: triangles, bytes, time and memory of meshes over tolerances, rays and time of pictures
 ///
-/// Meshes: makes all photosurfaces at each tolerance, writes them to nowhere, and tells the triangles that were made, the
+/// Meshes: exports all photosurfaces at each tolerance to a temporary file, and tells the triangles that were made, the
 /// least that theory allows and those that uniform subdivision would take; how large the file is, how long it took, how
 /// much memory was used; the error that is proven and the one that is measured at random places.
 ///
@@ -167,14 +167,14 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     if !settings.tolerances.is_empty() {
         tell_of_rest(&input, verbosity)?;
     }
-    let progress = progress_bar(settings.pieces(), "runs", verbosity);
-    let study = CostStudy::new(&input.scene, &input.models, &settings, || progress.inc(1));
-    progress.finish_and_clear();
+    let progress = Bar::new(settings.pieces(), "runs", verbosity);
+    let study = CostStudy::new(&input.scene, &input.models, &settings, &progress);
+    progress.finish();
     if let Some(rays) = &settings.rays {
         tell_of_missing(&rays.textures, &input.scene, verbosity);
     }
     let mut study = study.map_err(|error| match error {
-        StudyError::Write { .. } => anyhow::Error::new(error),
+        StudyError::Export { .. } => anyhow::Error::new(error),
         StudyError::RepeatedSamples(_) => anyhow::Error::new(error).context("--pixel-samples"),
         _ => anyhow::Error::new(error).context("--tolerances"),
     })?;

@@ -1,23 +1,23 @@
 //! `photosurface export`: photosurfaces as meshes.
 
 use std::fs;
-use std::io::{IsTerminal, stdout};
+use std::io::{IsTerminal, Write, stdout};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, anyhow, ensure};
 use clap::ValueEnum;
-use photosurface::{Attribute, Format, PlacedScene, Playback, Scene, replaced_data};
+use photosurface::{
+    Attribute, ExportError, ExportLevel, ExportSettings, Exported, Facts, Format, PlacedScene,
+    Playback, Report, StageTime, WriteError, export_levels, write_report,
+};
 
 use super::Status;
-use super::accuracy::{AccuracyArgs, DetailArgs, Tally};
+use super::accuracy::{AccuracyArgs, DetailArgs};
 use super::args::{InputArgs, ObserverArgs, number};
 use super::input::Input;
-use super::messages::{Verbosity, counted, size, stdout_is_closed};
-use super::output::{
-    FileFormat, check_destinations, check_range, extension, file_for_each, from_first_to_last,
-    is_stdout, progress_bar, with_suffix,
-};
-use super::work::{Clock, Work, write_file, write_report};
+use super::messages::{Verbosity, counted, print, size, stdout_is_closed};
+use super::output::{Bar, FileFormat, check_destinations, from_first_to_last, is_stdout, or_ply};
 
 /// Write photosurfaces as meshes
 ///
@@ -116,188 +116,144 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
         );
     }
 
-    let mut clock = Clock::default();
+    let start = Instant::now();
     let mut input = Input::read(&args.input, &args.observer, args.verbosity)?;
     if !args.attributes.is_empty() {
         let attributes = args.attributes.iter().copied().collect();
         input.scene = input.scene.with_attributes(attributes);
     }
-    let playback = output.playback(format, &input.scene)?;
     let path = output.path(&input.name);
-    let steps = input.scene.steps().len();
-    let levels: Vec<Level> = args
-        .detail
-        .levels(&args.accuracy, input.scene)?
-        .into_iter()
-        .map(|(suffix, scene)| Level {
-            scene,
-            files: output.files(&with_suffix(&path, &suffix), steps),
-            report: output
-                .report
-                .as_deref()
-                .map(|report| with_suffix(report, &suffix)),
-        })
-        .collect();
-    check_destinations(outputs(&levels, format), &input.files)?;
-    clock.stop("read");
-
+    let placed = PlacedScene::new(args.accuracy.scene(input.scene), input.models)?;
+    let settings = args.settings(start);
+    let levels = export_levels(&placed, &settings, format, &path).map_err(in_words_of_flags)?;
+    check_destinations(levels.iter().flat_map(ExportLevel::outputs), &input.files)?;
+    if format != Format::Ply {
+        tell_replaced_names(&placed, &path, args.verbosity);
+    }
     let mut status = Status::Done;
-    let (mut models, last) = (input.models, levels.len() - 1);
-    for (index, level) in levels.into_iter().enumerate() {
-        // The last may have them all for itself.
-        let models = match index == last {
-            true => std::mem::take(&mut models),
-            false => models.clone(),
-        };
-        let placed = PlacedScene::new(level.scene, models)?;
-        let of_file = || level.files[0].display().to_string();
-        format
-            .least_size(&placed, if output.split { 1 } else { steps })
-            .with_context(of_file)?;
-        check_range(format, &placed).with_context(of_file)?;
-        if index == 0 && format != Format::Ply {
-            tell_replaced_names(&placed, &path, args.verbosity);
-        }
-        let clock = clock.clone();
-        let certified = export(
-            args,
-            format,
-            placed,
-            playback,
-            &level.files,
-            level.report.as_deref(),
-            clock,
-        )?;
-        if !certified {
+    for level in levels {
+        level.check().map_err(|error| match error {
+            ExportError::File { file, source } => {
+                or_ply(source, level.placed()).context(file.display().to_string())
+            }
+            error => error.into(),
+        })?;
+        if !export(args, level)? {
             status = Status::NotCertified;
         }
     }
     Ok(status)
 }
 
-/// One level of detail.
-struct Level {
-    scene: Scene,
-    /// One for each step, or one for all.
-    files: Vec<PathBuf>,
-    report: Option<PathBuf>,
-}
-
-/// Makes and writes the photosurfaces of a placed; whether all of them are certified.
-fn export(
-    args: &ExportArgs,
-    format: Format,
-    placed: PlacedScene,
-    playback: Option<Playback>,
-    files: &[PathBuf],
-    report: Option<&Path>,
-    mut clock: Clock,
-) -> anyhow::Result<bool> {
+/// Makes and writes the photosurfaces of one level of detail; whether all of them are certified.
+fn export(args: &ExportArgs, level: ExportLevel) -> anyhow::Result<bool> {
     let verbosity = args.verbosity;
-    let wanted = args.accuracy.wanted_in(format, placed.scene());
-    let placed = match wanted.subdivide {
-        true => args.accuracy.within_budget(placed, wanted, verbosity).0,
-        false => placed,
-    };
-    clock.stop("predict");
-
-    let parts: usize = placed.objects().map(|(_, parts)| parts.len()).sum();
-    let all = parts * placed.scene().steps().len();
-    let mut work = Work {
-        progress: progress_bar(all, "photosurfaces", verbosity),
-        placed: &placed,
-        wanted,
-        playback,
-        verbosity,
-        clock,
-        tally: Tally::default(),
-        reported: report.map(|_| vec![]),
-        data_files: vec![],
-    };
-    let finish = |work: &Work<'_>| match (report, &work.reported) {
-        (Some(path), Some(made)) => write_report(path, &placed, made, &work.clock),
-        _ => Ok(()),
-    };
-    if args.output.split {
-        for (step, file) in files.iter().enumerate() {
-            write_file(file, format, &mut work, step..step + 1, |_| Ok(()))?;
-        }
-        finish(&work)?;
-    } else {
-        // Before the mesh appears: where the report fails, nothing is written.
-        let steps = 0..placed.scene().steps().len();
-        write_file(&files[0], format, &mut work, steps, finish)?;
+    let has_marker = level.placed().marker().is_some();
+    let to_stdout = is_stdout(&level.files()[0]);
+    let report_path = level.report().map(Path::to_owned);
+    let progress = Bar::new(level.pieces(), "photosurfaces", verbosity);
+    let fitted = level.fit();
+    if let Some(fitted) = fitted.fitted() {
+        args.accuracy.tell_fitted(fitted, verbosity);
     }
-    work.progress.finish_and_clear();
-
-    for (name, seconds) in &work.clock.stages {
+    let report = |made: &Report| match &report_path {
+        Some(path) if is_stdout(path) => report_to_stdout(made),
+        Some(path) => write_report(path, made),
+        None => Ok(()),
+    };
+    let exported = match to_stdout {
+        true => {
+            let mut exported = None;
+            print(|out| {
+                exported = Some(fitted.write_to(out, &progress)?);
+                Ok(())
+            })?;
+            let exported = exported.context("stdout")?;
+            report(&exported.report)?;
+            exported
+        }
+        false => fitted.write(&progress, report).map_err(in_words_of_flags)?,
+    };
+    progress.finish();
+    for facts in &exported.report.objects {
+        verbosity.detail(describe(facts));
+    }
+    for StageTime { name, seconds } in &exported.report.stages {
         verbosity.detail(format_args!("{name}: {seconds:.3} s"));
     }
-    if !is_stdout(&files[0]) {
-        verbosity.result(summary(files, &work.data_files, &placed, &work.tally));
+    if !to_stdout {
+        verbosity.result(summary(&exported, has_marker));
     }
-    Ok(args.accuracy.is_kept(&work.tally, verbosity))
+    Ok(args.accuracy.is_kept(&exported.tally, verbosity))
+}
+
+/// The error with the flags that the settings come from.
+pub(super) fn in_words_of_flags(error: ExportError) -> anyhow::Error {
+    match error {
+        ExportError::NoTime => anyhow!("--animate: a .ply has no time, expected .glb or .gltf"),
+        ExportError::OneStep => anyhow!(
+            "--animate: the scene has one step, expected at least two, such as --steps -6..6/7"
+        ),
+        ExportError::FramesPerSecond(number) => {
+            anyhow!("--fps is {number:?}, expected a number from 0.001 to 1000")
+        }
+        ExportError::MorphingAttributes => anyhow!(
+            "--animate=morph shows one mesh, and attributes differ from step to step; use --animate=frames"
+        ),
+        ExportError::RepeatedLevel(tolerance) => {
+            anyhow!("--lod names the tolerance {tolerance} twice")
+        }
+        error => error.into(),
+    }
+}
+
+impl ExportArgs {
+    /// The settings of the job; the input was read from `start` to now.
+    fn settings(&self, start: Instant) -> ExportSettings {
+        let frames_per_second = self.output.fps;
+        ExportSettings {
+            split: self.output.split,
+            playback: self.output.animate.map(|animate| match animate {
+                Animate::Frames => Playback::Frames { frames_per_second },
+                Animate::Morph => Playback::Morph { frames_per_second },
+            }),
+            levels: self.detail.tolerances().to_vec(),
+            subdivide: self.accuracy.subdivides(),
+            max_triangles: self.accuracy.max_triangles(),
+            report: self.output.report.clone(),
+            keep_facts: self.verbosity.is_verbose(),
+            stages_before: vec![StageTime {
+                name: "read",
+                seconds: start.elapsed().as_secs_f64(),
+            }],
+        }
+    }
 }
 
 impl OutputArgs {
     fn format(&self) -> anyhow::Result<Format> {
-        let wanted = self.format.unwrap_or(FileFormat::Glb);
+        let wanted = self.format.map_or(Format::Glb, Format::from);
         let Some(path) = &self.output else {
-            return Ok(wanted.into());
+            return Ok(wanted);
         };
         if is_stdout(path) {
             ensure!(
-                wanted != FileFormat::Gltf,
+                wanted != Format::Gltf,
                 "--format gltf: the data of a .gltf is a file beside it, which stdout has no place for; expected glb or ply"
             );
-            return Ok(wanted.into());
+            return Ok(wanted);
         }
-        let of_name = extension(path);
-        let of_name = of_name.and_then(|extension| FileFormat::of_extension(&extension));
-        let Some(of_name) = of_name else {
-            bail!(
-                "{}: unknown extension, expected .glb, .gltf or .ply",
-                path.display()
-            );
+        let Some(of_name) = Format::of_path(path) else {
+            return Err(ExportError::UnknownExtension(path.clone()).into());
         };
         ensure!(
-            self.format.is_none_or(|format| format == of_name),
+            self.format.is_none() || wanted == of_name,
             "{}: is .{} by its name and .{} by --format; leave out --format, or give the name that extension",
             path.display(),
             of_name.extension(),
             wanted.extension()
         );
-        Ok(of_name.into())
-    }
-
-    /// How the steps are shown one after another, if that is asked for and there is something to show.
-    fn playback(&self, format: Format, scene: &Scene) -> anyhow::Result<Option<Playback>> {
-        let Some(animate) = self.animate else {
-            return Ok(None);
-        };
-        ensure!(
-            format != Format::Ply,
-            "--animate: a .ply has no time, expected .glb or .gltf"
-        );
-        ensure!(
-            scene.steps().len() > 1,
-            "--animate: the scene has one step, expected at least two, such as --steps -6..6/7"
-        );
-        let frames_per_second = self.fps;
-        ensure!(
-            (1e-3..=1e3).contains(&frames_per_second),
-            "--fps is {frames_per_second:?}, expected a number from 0.001 to 1000"
-        );
-        Ok(Some(match animate {
-            Animate::Frames => Playback::Frames { frames_per_second },
-            Animate::Morph => {
-                ensure!(
-                    scene.attributes().is_empty(),
-                    "--animate=morph shows one mesh, and attributes differ from step to step; use --animate=frames"
-                );
-                Playback::Morph { frames_per_second }
-            }
-        }))
+        Ok(of_name)
     }
 
     /// Stdout holds one thing.
@@ -335,30 +291,11 @@ impl OutputArgs {
         match &self.output {
             Some(path) => path.clone(),
             None => {
-                let format = self.format.unwrap_or(FileFormat::Glb);
+                let format = self.format.map_or(Format::Glb, Format::from);
                 PathBuf::from(format!("{name}_photosurface.{}", format.extension()))
             }
         }
     }
-
-    /// The files that will be written, one for each step or one for all.
-    fn files(&self, path: &Path, steps: usize) -> Vec<PathBuf> {
-        if !self.split {
-            return vec![path.to_owned()];
-        }
-        file_for_each(path, steps)
-    }
-}
-
-/// Every file of every level that is written over or removed. The data of a `.gltf` has a new name, made of what is in
-/// it; that of the one which is replaced goes.
-fn outputs(levels: &[Level], format: Format) -> impl Iterator<Item = PathBuf> {
-    levels.iter().flat_map(move |level| {
-        let gltf = level.files.iter().filter(move |_| format == Format::Gltf);
-        let files = level.files.iter().cloned();
-        let files = files.chain(gltf.filter_map(|file| replaced_data(file)));
-        files.chain(level.report.clone())
-    })
 }
 
 /// Tells which names of parts are not in the file as they are in the source.
@@ -386,25 +323,36 @@ fn shown_name(name: &str) -> String {
     }
 }
 
-fn summary(
-    files: &[PathBuf],
-    data_files: &[PathBuf],
-    placed: &PlacedScene,
-    made: &Tally,
-) -> String {
-    let sizes = files.iter().chain(data_files);
-    let sizes = sizes.map(|file| fs::metadata(file).map_or(0, |data| data.len()));
+fn summary(exported: &Exported, has_marker: bool) -> String {
+    let files = exported.files.iter().chain(&exported.data_files);
+    let sizes = files.map(|file| fs::metadata(file).map_or(0, |data| data.len()));
     let bytes = sizes.sum();
-    let place = from_first_to_last(files);
-    let marker = if placed.marker().is_some() {
-        " and the marker"
-    } else {
-        ""
-    };
+    let place = from_first_to_last(&exported.files);
+    let marker = if has_marker { " and the marker" } else { "" };
     format!(
         "{place}: {}, {}{marker}, {}",
-        counted(made.photosurfaces, "photosurface"),
-        counted(made.triangles, "triangle"),
+        counted(exported.tally.photosurfaces, "photosurface"),
+        counted(exported.tally.triangles, "triangle"),
         size(bytes)
     )
+}
+
+fn describe(facts: &Facts) -> String {
+    format!(
+        "{}: proper time {}, gamma {:.6}, {}",
+        facts.name,
+        facts.proper_time,
+        facts.relative_gamma,
+        counted(facts.triangles, "triangle")
+    )
+}
+
+fn report_to_stdout(report: &Report) -> Result<(), WriteError> {
+    let text = report.to_json() + "\n";
+    let mut out = stdout().lock();
+    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    written.map_err(|source| WriteError::Io {
+        path: "stdout".into(),
+        source,
+    })
 }

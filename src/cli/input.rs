@@ -5,20 +5,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, bail, ensure};
 use photosurface::{
-    Access, BUILT_IN_SCENES, DVec3, Findings, Model, Object, Observer, Place, ReadError, Scene,
-    Source, Textures, read_whole,
+    Access, BUILT_IN_SCENES, Findings, MAX_SCENE_BYTES, Model, Object, Observer, ReadError, Scene,
+    Source, Textures, read_whole, scene_from_bytes, stand_off,
 };
 
 use super::args::{InputArgs, ObserverArgs};
 use super::example::built_in;
 use super::messages::Verbosity;
 use super::output::extension;
-
-/// Beyond its centre, by how many diagonals of a bare mesh's bounds the observer stands off.
-const STAND_OFF: f64 = 2.0;
-
-/// How many bytes the text of a scene has at most: some hundred thousand objects.
-const MAX_SCENE_BYTES: u64 = 100_000_000;
 
 /// How many bytes a GLB has at most, since its header says so in 32 bits.
 const MAX_GLB_BYTES: u64 = u32::MAX as u64;
@@ -156,12 +150,7 @@ impl Reading<'_> {
         let scene = Scene::new(Observer::default(), vec![Object::new(name, source)])?;
         let mut scene = self.observer.apply(scene)?;
         if !self.observer.has_place() {
-            let observer = *scene.observer();
-            let position = Place::new(stand_off(&model, observer.velocity.direction()))?;
-            scene = scene.with_observer(Observer {
-                position,
-                ..observer
-            });
+            scene = stand_off(scene, &model)?;
         }
         Ok(Input {
             name: name.to_owned(),
@@ -225,17 +214,6 @@ fn from_stdin() -> anyhow::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn scene_from_bytes(bytes: &[u8]) -> anyhow::Result<Scene> {
-    let text = std::str::from_utf8(bytes).map_err(|error| {
-        let offset = error.valid_up_to();
-        anyhow!(
-            "not text in UTF-8: byte {offset}, counted from 0, is {:#04x}",
-            bytes[offset]
-        )
-    })?;
-    Ok(Scene::from_json(text)?)
-}
-
 /// Stdin has no name that says what it holds.
 fn scene_from_stdin(bytes: &[u8]) -> anyhow::Result<Scene> {
     const EXPECTED: &str = "stdin takes a scene (JSON) or a GLB";
@@ -251,13 +229,5 @@ fn scene_from_stdin(bytes: &[u8]) -> anyhow::Result<Scene> {
         !is_gltf,
         "{EXPECTED}, this is a .gltf, which refers to other files: give its name in place of -"
     );
-    scene_from_bytes(bytes).context("stdin")
-}
-
-/// Two diagonals of the bounds before the middle of the model.
-fn stand_off(model: &Model, direction: DVec3) -> DVec3 {
-    let Some((low, high)) = model.bounds() else {
-        return DVec3::ZERO;
-    };
-    0.5 * (low + high) - direction * (STAND_OFF * (high - low).length())
+    Ok(scene_from_bytes(bytes).context("stdin")?)
 }

@@ -30,6 +30,11 @@ impl Verbosity {
         self.quiet
     }
 
+    /// Whether details are told.
+    pub(super) fn is_verbose(self) -> bool {
+        self.verbose
+    }
+
     /// Something the user should know about the input.
     pub(super) fn note(self, note: impl Display) {
         if !self.quiet {

@@ -1,7 +1,6 @@
 //! The command line: one file per command, and what they share.
 
 mod accuracy;
-mod ahead;
 mod args;
 mod camera;
 mod check;
@@ -16,7 +15,6 @@ mod output;
 mod render;
 mod schema;
 mod studio;
-mod work;
 
 use std::process::ExitCode;
 

@@ -1,15 +1,12 @@
 //! Where results go: names of files, what must not be written over, how far the work has got.
 
-use std::collections::HashMap;
-use std::fs;
 use std::io::{IsTerminal, stderr};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use anyhow::{bail, ensure};
-use clap::ValueEnum;
+use anyhow::anyhow;
 use indicatif::{ProgressBar, ProgressStyle};
-use photosurface::{Format, PlacedScene, destination, step_label};
+use photosurface::{Cancelled, Format, PlacedScene, Progress, WriteError, check_outputs};
 
 use super::messages::Verbosity;
 
@@ -19,23 +16,6 @@ pub(super) enum FileFormat {
     Glb,
     Gltf,
     Ply,
-}
-
-impl FileFormat {
-    /// Of the names of its files.
-    pub(super) fn extension(self) -> &'static str {
-        match self {
-            Self::Glb => "glb",
-            Self::Gltf => "gltf",
-            Self::Ply => "ply",
-        }
-    }
-
-    pub(super) fn of_extension(extension: &str) -> Option<Self> {
-        let all = Self::value_variants().iter().copied();
-        all.into_iter()
-            .find(|format| format.extension() == extension)
-    }
 }
 
 impl From<FileFormat> for Format {
@@ -59,26 +39,6 @@ pub(super) fn extension(path: &Path) -> Option<String> {
         .map(|extension| extension.to_string_lossy().to_ascii_lowercase())
 }
 
-/// `out.glb` and `_lod0` make `out_lod0.glb`; a stream stays what it is.
-pub(super) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
-    if suffix.is_empty() || is_stdout(path) {
-        return path.to_owned();
-    }
-    let mut name = path.file_stem().unwrap_or_default().to_owned();
-    name.push(suffix);
-    if let Some(extension) = path.extension() {
-        name.push(".");
-        name.push(extension);
-    }
-    path.with_file_name(name)
-}
-
-/// A file for each step: `out_step000.glb`, `out_step001.glb`, ...
-pub(super) fn file_for_each(path: &Path, steps: usize) -> Vec<PathBuf> {
-    let file = |step| with_suffix(path, &format!("_{}", step_label(step)));
-    (0..steps).map(file).collect()
-}
-
 /// Several files in a few words.
 pub(super) fn from_first_to_last(files: &[PathBuf]) -> String {
     match files {
@@ -93,42 +53,20 @@ pub(super) fn check_destinations(
     written: impl IntoIterator<Item = PathBuf>,
     read: &[PathBuf],
 ) -> anyhow::Result<()> {
-    let read: HashMap<PathBuf, &PathBuf> = read
-        .iter()
-        .filter_map(|file| Some((fs::canonicalize(file).ok()?, file)))
-        .collect();
-    let mut places: HashMap<PathBuf, PathBuf> = HashMap::new();
-    for file in written.into_iter().filter(|file| !is_stdout(file)) {
-        let place = destination(&file)?;
-        if let Some(input) = read.get(&place) {
-            bail!(
-                "the output {} would be written over the input {}; choose another name for the output",
-                file.display(),
-                input.display()
-            );
-        }
-        if let Some(other) = places.get(&place) {
-            bail!(
-                "the output {} would be written over another output, {}; choose another name for one of them",
-                file.display(),
-                other.display()
-            );
-        }
-        places.insert(place, file);
-    }
-    Ok(())
+    let written = written.into_iter().filter(|file| !is_stdout(file));
+    Ok(check_outputs(written, read)?)
 }
 
-/// Whether a file of this format can hold what is seen. Where another one could, the error says so.
-pub(super) fn check_range(format: Format, placed: &PlacedScene) -> anyhow::Result<()> {
-    let Err(error) = format.check_range(placed) else {
-        return Ok(());
-    };
-    ensure!(
-        format == Format::Ply || Format::Ply.check_range(placed).is_err(),
-        "{error}; or write a .ply, whose 64-bit numbers hold it"
+/// An error of numbers that the format cannot hold, with advice where another format could.
+pub(super) fn or_ply(error: WriteError, placed: &PlacedScene) -> anyhow::Error {
+    let is_of_numbers = matches!(
+        error,
+        WriteError::Range { .. } | WriteError::TooFar { .. } | WriteError::TooSmall { .. }
     );
-    Err(error.into())
+    match is_of_numbers && Format::Ply.check_range(placed).is_ok() {
+        true => anyhow!("{error}; or write a .ply, whose 64-bit numbers hold it"),
+        false => error.into(),
+    }
 }
 
 /// A bar of so many things, on a terminal.
@@ -144,4 +82,30 @@ pub(super) fn progress_bar(length: usize, things: &str, verbosity: Verbosity) ->
     // One thing may take a minute, in which there is to be seen that it goes on.
     bar.enable_steady_tick(Duration::from_millis(200));
     bar
+}
+
+/// A bar that shows how far a job has got.
+pub(super) struct Bar(ProgressBar);
+
+impl Bar {
+    /// A bar of so many things, on a terminal.
+    pub(super) fn new(length: usize, things: &str, verbosity: Verbosity) -> Self {
+        Self(progress_bar(length, things, verbosity))
+    }
+
+    /// The job is done: the bar goes.
+    pub(super) fn finish(&self) {
+        self.0.finish_and_clear();
+    }
+}
+
+impl Progress for Bar {
+    fn begin(&self, pieces: usize) {
+        self.0.set_length(pieces as u64);
+    }
+
+    fn advance(&self, pieces: usize) -> Result<(), Cancelled> {
+        self.0.inc(pieces as u64);
+        Ok(())
+    }
 }

@@ -3,8 +3,8 @@
 use std::io::{IsTerminal, stdout};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, ensure};
-use photosurface::{Picture, PlacedScene, Precision, write_whole};
+use anyhow::{Context, bail, ensure};
+use photosurface::{Picture, PlacedScene, Precision, file_for_each_step, write_whole};
 
 use super::Status;
 use super::accuracy::AccuracyArgs;
@@ -13,9 +13,7 @@ use super::camera::{CameraArgs, View};
 use super::guides::GuideArgs;
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print};
-use super::output::{
-    check_destinations, extension, file_for_each, from_first_to_last, is_stdout, progress_bar,
-};
+use super::output::{check_destinations, extension, from_first_to_last, is_stdout, progress_bar};
 use super::studio::Studio;
 
 /// Make pictures of what the observer sees, or of photosurfaces from outside
@@ -79,18 +77,20 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     let files = match steps {
         1 => vec![path],
         _ if camera.sheet || camera.together => vec![path],
-        _ => file_for_each(&path, steps),
+        _ if is_stdout(&path) => bail!(
+            "{steps} steps are as many pictures, they cannot all go to stdout; choose one with --steps"
+        ),
+        _ => file_for_each_step(&path, steps),
     };
-    ensure!(
-        files.len() == 1 || !is_stdout(&files[0]),
-        "{steps} steps are as many pictures, they cannot all go to stdout; choose one with --steps"
-    );
     check_destinations(files.iter().cloned(), &input.files)?;
     let scene = args.accuracy.scene(input.scene);
     let mut placed = PlacedScene::new(scene, input.models)?;
     let wanted = args.accuracy.wanted(Precision::Double);
     if camera.shows_meshes(method) && wanted.subdivide {
-        placed = args.accuracy.within_budget(placed, wanted, verbosity).0;
+        placed = args
+            .accuracy
+            .within_budget(placed, wanted, verbosity)
+            .placed;
     }
     let progress = progress_bar(Studio::rows(camera, steps), "rows", verbosity);
     let mut studio = Studio::new(

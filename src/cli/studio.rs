@@ -7,10 +7,9 @@ use anyhow::Context;
 use indicatif::ProgressBar;
 use photosurface::{
     Camera, Color, DVec3, Picture, PictureOptions, PictureSize, PlacedScene, Scenery, Strokes,
-    SurfaceOptions, Textures, Viewpoint,
+    SurfaceOptions, Tally, Textures, Viewpoint,
 };
 
-use super::accuracy::Tally;
 use super::camera::{CameraArgs, Method, Outside, View, middle_of_sky, outermost, rough_places};
 use super::guides::{GuideArgs, label};
 use super::messages::{Verbosity, counted};

@@ -33,7 +33,7 @@ pub(super) struct Shaped {
     pub(super) appearance: Appearance,
     pub(super) model_to_rest: DAffine3,
     pub(super) largest_scale: f64,
-    /// Of its facets as they were placed_object from the curved surface, at rest.
+    /// Of its facets as they were placed, from the curved surface, at rest.
     pub(super) deviation: f64,
 }
 

@@ -13,7 +13,7 @@ use super::plan::{Plan, Surface, Unrefined};
 use super::{Photosurface, PlacedSceneError, SurfaceOptions};
 use crate::light_cone::View;
 use crate::material::{Model, Part};
-use crate::scene::{MarkerRadius, Object, Scene};
+use crate::scene::{MarkerRadius, Object, Scene, Tolerance};
 use crate::shape::{Appearance, Color, Shape};
 use crate::spacetime::Velocity;
 
@@ -21,7 +21,7 @@ use crate::spacetime::Velocity;
 const MARKER_NAME: &str = "observer";
 const MARKER_RESOLUTION: u32 = 24;
 
-/// A scene with the geometry of its objects, placed_object in their rest frames: all that photosurfaces need.
+/// A scene with the geometry of its objects, placed in their rest frames: all that photosurfaces need.
 ///
 /// # Example
 ///
@@ -104,6 +104,17 @@ impl PlacedScene {
             objects,
             origins,
         })
+    }
+
+    /// The same placed scene with one tolerance for all objects, and no aims that a budget has loosened.
+    #[must_use]
+    pub fn with_tolerance_for_all(mut self, tolerance: Tolerance) -> Self {
+        self.scene = self.scene.with_tolerance_for_all(tolerance);
+        for placed_object in &mut self.objects {
+            placed_object.loosening = 1.0;
+            placed_object.granted = None;
+        }
+        self
     }
 
     /// The scene.

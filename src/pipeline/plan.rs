@@ -69,7 +69,7 @@ pub(super) struct Plan<'a> {
     shape: Option<Shape>,
     /// Of facets from a curved surface, at rest; zero for what is flat.
     deviation: f64,
-    /// The parts as they were placed_object, as seen.
+    /// The parts as they were placed, as seen.
     seen: Vec<MappedMesh>,
     precision: Precision,
     /// The box around all steps where they share one mesh in a file, as morph targets.
@@ -344,7 +344,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The parts as they were placed_object, each of whose facets stands for `each` smaller ones.
+    /// The parts as they were placed, each of whose facets stands for `each` smaller ones.
     fn draft_as_placed(&mut self, each: f64) -> Draft<'a> {
         let seen = std::mem::take(&mut self.seen);
         Draft {

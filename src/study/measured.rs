@@ -16,7 +16,7 @@ const LOT: usize = 4096;
 /// However many photosurfaces share the places, each gets so many.
 const FEWEST_PLACES: usize = 100;
 
-/// The largest error found on the photosurfaces of a placed.
+/// The largest error found on the photosurfaces of a placed scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Measured {
     /// A length in the observer's frame.

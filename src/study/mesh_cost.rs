@@ -1,20 +1,20 @@
 //! One tolerance of the study: photosurfaces made and written, timed, proven and measured.
 
-use std::hint::black_box;
-use std::io::{self, Write};
-use std::time::Instant;
+use std::env::temp_dir;
+use std::fs;
 
 use serde::Serialize;
+use tempfile::TempDir;
 
 use super::measured::{Measured, measure};
 use super::memory::{peak_bytes, restart_peak};
 use super::uniform::{UniformCost, uniform_cost};
 use super::{CostSettings, StudyError};
+use crate::jobs::{Cancelled, ExportError, ExportLevel, ExportSettings, Progress, export_levels};
 use crate::material::Model;
-use crate::pipeline::{Facts, Photosurface, PlacedScene, SurfaceOptions};
+use crate::pipeline::{Facts, PlacedScene};
 use crate::scene::{Scene, Tolerance, Unit};
-use crate::tessellate::Precision;
-use crate::write::{Export, Format, write_glb};
+use crate::write::{Format, WriteError};
 
 /// What one tolerance costs, all photosurfaces of all steps together.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -48,7 +48,7 @@ pub struct Made {
     /// How long it took.
     pub seconds: Seconds,
     /// The most memory that the process had in use while it predicted, made and wrote for the first time, in bytes;
-    /// with what was in use before. `None` where the system does not tell.
+    /// with the memory in use before. `None` where the system does not tell.
     pub peak_memory_bytes: Option<u64>,
     /// Proven: whether all are within the tolerance.
     pub certified: bool,
@@ -75,7 +75,7 @@ pub struct Seconds {
     pub predict: f64,
     /// To refine, map and prove.
     pub photosurface: f64,
-    /// To write the GLB, to nowhere.
+    /// To write the GLB, to a file of its own in the folder for temporary files.
     pub write: f64,
 }
 
@@ -89,23 +89,22 @@ impl Seconds {
 /// What is measured of each tolerance beside its runs: the error, and uniform subdivision.
 pub(super) const MEASUREMENTS: usize = 2;
 
-/// Studies one tolerance; `done` is called after each run and each measurement.
+/// An export may make so many times the triangles that were predicted before its budget ends it.
+const PREDICTION_ROOM: u64 = 2;
+
+/// Studies one tolerance; `progress` advances by one after each run and each measurement.
 pub(super) fn mesh_cost(
     scene: &Scene,
     models: &[Model],
     tolerance: Tolerance,
     settings: &CostSettings,
-    mut done: impl FnMut(),
+    progress: &dyn Progress,
 ) -> Result<MeshCost, StudyError> {
     let placed = PlacedScene::new(
         scene.clone().with_tolerance_for_all(tolerance),
         models.to_vec(),
     )?;
-    let wanted = SurfaceOptions {
-        attributes: Format::Glb.attributes(placed.scene()),
-        subdivide: true,
-        precision: Precision::Single,
-    };
+    let wanted = Format::Glb.surface_options(placed.scene());
     let number = tolerance.number();
     let predictions = placed.predictions(wanted);
     let predicted_triangles: f64 = predictions.iter().map(|p| p.triangles).sum();
@@ -116,19 +115,22 @@ pub(super) fn mesh_cost(
         made: None,
     };
     if predicted_triangles > settings.max_triangles as f64 {
-        (0..settings.repeats.get() + MEASUREMENTS).for_each(|_| done());
+        progress.advance(settings.repeats.get() + MEASUREMENTS)?;
         return Ok(cost);
     }
-    let placed = placed.granting(wanted, settings.max_triangles);
+    let wrong = |source| StudyError::Export { tolerance, source };
+    let max_triangles = settings.max_triangles.saturating_mul(PREDICTION_ROOM);
+    let export = Export::new(&placed, max_triangles).map_err(wrong)?;
     let counts_memory = restart_peak();
-    let first = run(&placed, wanted, tolerance)?;
+    let first = export.run(progress).map_err(wrong)?;
     let peak_memory_bytes = counts_memory.then(peak_bytes).flatten();
-    done();
+    progress.advance(1)?;
     let mut times = vec![first.seconds];
     for _ in 1..settings.repeats.get() {
-        times.push(run(&placed, wanted, tolerance)?.seconds);
-        done();
+        times.push(export.run(progress).map_err(wrong)?.seconds);
+        progress.advance(1)?;
     }
+    let placed = first.placed;
     let certificates = || first.facts.iter().map(|facts| &facts.certificate);
     let triangles = certificates().map(|c| c.triangles_out).sum();
     let minimum_triangles: f64 = certificates().map(|c| c.minimum_triangles).sum();
@@ -138,14 +140,14 @@ pub(super) fn mesh_cost(
         of_tolerance,
         of_bound,
     } = measure(&placed, wanted, triangles, settings.samples.get());
-    done();
+    progress.advance(1)?;
     let uniform = uniform_cost(
         &placed,
         wanted,
         settings.max_uniform_triangles,
         settings.samples.get(),
     );
-    done();
+    progress.advance(1)?;
     cost.made = Some(Made {
         triangles,
         triangles_in: certificates().map(|c| c.triangles_in).sum(),
@@ -169,47 +171,74 @@ pub(super) fn mesh_cost(
     Ok(cost)
 }
 
+/// The export of a placed scene to a GLB, again and again, in a folder of its own.
+struct Export {
+    level: ExportLevel,
+    folder: TempDir,
+}
+
 /// What one run gives, without the photosurfaces.
 struct Run {
+    placed: PlacedScene,
     seconds: Seconds,
     facts: Vec<Facts>,
     bytes: u64,
 }
 
-/// Predicts, makes and writes all photosurfaces of a placed scene, as an export does.
-fn run(
-    placed: &PlacedScene,
-    wanted: SurfaceOptions,
-    tolerance: Tolerance,
-) -> Result<Run, StudyError> {
-    let start = Instant::now();
-    black_box(placed.predictions(wanted));
-    let predict = start.elapsed().as_secs_f64();
-    let start = Instant::now();
-    let mut photosurfaces: Vec<Photosurface> = vec![];
-    for step in 0..placed.scene().steps().len() {
-        photosurfaces.extend(placed.photosurfaces(step, wanted)?);
+impl Export {
+    fn new(placed: &PlacedScene, max_triangles: u64) -> Result<Self, ExportError> {
+        let folder = temp_dir();
+        let in_folder = |source| ExportError::of_file(&folder, WriteError::Stream(source));
+        let folder = TempDir::new_in(&folder).map_err(in_folder)?;
+        let settings = ExportSettings {
+            max_triangles,
+            ..ExportSettings::default()
+        };
+        let path = folder.path().join("study.glb");
+        let mut levels = export_levels(placed, &settings, Format::Glb, &path)?;
+        Ok(Self {
+            level: levels.swap_remove(0),
+            folder,
+        })
     }
-    let photosurface = start.elapsed().as_secs_f64();
-    let start = Instant::now();
-    let mut sink = Counting(0);
-    let export = Export {
-        scene: &placed.facts(),
-        marker: placed.marker(),
-        photosurfaces: &photosurfaces,
-        playback: None,
-    };
-    write_glb(&export, &mut sink).map_err(|source| StudyError::Write { tolerance, source })?;
-    let write = start.elapsed().as_secs_f64();
-    Ok(Run {
-        seconds: Seconds {
-            predict,
-            photosurface,
-            write,
-        },
-        facts: photosurfaces.into_iter().map(|made| made.facts).collect(),
-        bytes: sink.0,
-    })
+
+    fn run(&self, progress: &dyn Progress) -> Result<Run, ExportError> {
+        self.level.check()?;
+        let fitted = self.level.clone().fit();
+        let within = fitted.fitted();
+        let placed = within.map_or(self.level.placed(), |within| &within.placed);
+        let placed = placed.clone();
+        let exported = fitted.write(&Heard(progress), |_| Ok(()))?;
+        let bytes = fs::metadata(&exported.files[0]).map(|file| file.len());
+        let in_folder = |source| ExportError::of_file(self.folder.path(), source);
+        let bytes = bytes.map_err(|source| in_folder(WriteError::Stream(source)))?;
+        let seconds = |name: &str| {
+            let stages = exported.report.stages.iter();
+            let of_name = stages.filter(|stage| stage.name == name);
+            of_name.map(|stage| stage.seconds).sum()
+        };
+        Ok(Run {
+            placed,
+            seconds: Seconds {
+                predict: seconds("predict"),
+                photosurface: seconds("photosurface"),
+                write: seconds("write"),
+            },
+            facts: exported.report.objects,
+            bytes,
+        })
+    }
+}
+
+/// The caller of the study, who hears nothing of the pieces of an export and may end it all the same.
+struct Heard<'a>(&'a dyn Progress);
+
+impl Progress for Heard<'_> {
+    fn begin(&self, _: usize) {}
+
+    fn advance(&self, _: usize) -> Result<(), Cancelled> {
+        self.0.advance(0)
+    }
 }
 
 fn medians(times: &[Seconds]) -> Seconds {
@@ -228,20 +257,6 @@ pub(super) fn median(mut values: Vec<f64>) -> f64 {
     match values.len() % 2 {
         0 => 0.5 * (values[middle - 1] + values[middle]),
         _ => values[middle],
-    }
-}
-
-/// Counts bytes and forgets them.
-struct Counting(u64);
-
-impl Write for Counting {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0 += bytes.len() as u64;
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
     }
 }
 

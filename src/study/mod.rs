@@ -23,10 +23,10 @@ pub use plot::{PlotError, PlotSize};
 pub use ray_cost::{Pictures, RayCost, RaySettings};
 pub use uniform::{UniformCost, UniformRun};
 
+use crate::jobs::{Cancelled, ExportError, Progress};
 use crate::material::Model;
 use crate::pipeline::{PlacedScene, PlacedSceneError, SceneFacts};
 use crate::scene::{Scene, Tolerance, Unit};
-use crate::write::WriteError;
 
 /// What a study looks at, and how closely.
 #[derive(Clone, Debug)]
@@ -62,7 +62,7 @@ impl Default for CostSettings {
 }
 
 impl CostSettings {
-    /// How often [`CostStudy::new`] calls its `done`: how far the work has got.
+    /// How many runs, measurements and pictures [`CostStudy::new`] does.
     pub fn pieces(&self) -> usize {
         let repeats = self.repeats.get();
         let rays = self.rays.as_ref();
@@ -87,7 +87,7 @@ impl CostSettings {
 ///     tolerances: vec![Tolerance::relative(1e-2)?, Tolerance::relative(1e-3)?],
 ///     ..CostSettings::default()
 /// };
-/// let study = CostStudy::new(&scene, &models, &settings, || ())?;
+/// let study = CostStudy::new(&scene, &models, &settings, &())?;
 /// for cost in &study.meshes {
 ///     let made = cost.made.as_ref().expect("few triangles");
 ///     assert!(made.error <= made.bound && made.bound <= cost.tolerance);
@@ -141,19 +141,22 @@ pub enum StudyError {
         /// How many cameras there are.
         cameras: usize,
     },
-    /// Photosurfaces that no file can hold.
+    /// Photosurfaces that no file can hold, or a file that cannot be written.
     #[error("at the tolerance {tolerance}")]
-    Write {
+    Export {
         /// Which.
         tolerance: Tolerance,
         /// Why.
-        source: WriteError,
+        source: ExportError,
     },
+    /// The caller ended the study.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl CostStudy {
-    /// Studies a scene with one model for each object; `done` is called after every run, measurement and picture,
-    /// [`CostSettings::pieces`] times in all.
+    /// Studies a scene with one model for each object; the pieces of work that `progress` hears of are runs, measurements and
+    /// pictures, [`CostSettings::pieces`] in all.
     ///
     /// # Errors
     ///
@@ -163,7 +166,7 @@ impl CostStudy {
         scene: &Scene,
         models: &[Model],
         settings: &CostSettings,
-        mut done: impl FnMut(),
+        progress: &dyn Progress,
     ) -> Result<Self, StudyError> {
         let tolerances = in_order(&settings.tolerances)?;
         let rays = settings.rays.as_ref();
@@ -175,18 +178,20 @@ impl CostStudy {
         if let Some(cameras) = rays.map(|rays| rays.cameras.len()).filter(|&n| n != steps) {
             return Err(StudyError::Cameras { steps, cameras });
         }
+        progress.begin(settings.pieces());
         let unit = tolerances.first().map(|first| first.unit());
         // From loose to tight, so that what an allocator keeps of one says little of the next one's memory.
         let mut meshes = Vec::with_capacity(tolerances.len());
         for tolerance in tolerances {
-            let cost = mesh_cost::mesh_cost(scene, models, tolerance, settings, &mut done)?;
+            let cost = mesh_cost::mesh_cost(scene, models, tolerance, settings, progress)?;
             meshes.push(cost);
         }
         let placed = PlacedScene::new(scene.clone(), models.to_vec())?;
         let (pictures, rays) = match rays {
             Some(rays) if !samples.is_empty() => {
                 let repeats = settings.repeats.get();
-                let (pictures, rays) = ray_cost::ray_costs(&placed, rays, &samples, repeats, done);
+                let (pictures, rays) =
+                    ray_cost::ray_costs(&placed, rays, &samples, repeats, progress)?;
                 (Some(pictures), rays)
             }
             _ => (None, vec![]),
@@ -236,7 +241,10 @@ fn rising(samples: &[NonZeroU32]) -> Result<Vec<u32>, StudyError> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use super::*;
+    use crate::render::{Camera, PictureSize, Projection};
 
     #[test]
     fn all_pieces_are_done_whether_carried_out_or_not() {
@@ -252,10 +260,58 @@ mod tests {
             samples: NonZeroUsize::MIN,
             ..CostSettings::default()
         };
-        let mut done = 0;
-        let study = CostStudy::new(&scene, &models, &settings, || done += 1).unwrap();
+        let counted = Counted::default();
+        let study = CostStudy::new(&scene, &models, &settings, &counted).unwrap();
         assert!(study.meshes[0].made.is_some() && study.meshes[1].made.is_none());
-        assert_eq!((done, settings.pieces()), (10, 10));
+        let [begun, done] = [counted.begun, counted.done].map(AtomicUsize::into_inner);
+        assert_eq!((begun, done, settings.pieces()), (10, 10, 10));
+    }
+
+    /// Hears how many pieces there are, and how many are done; ends the work after so many.
+    #[derive(Default)]
+    struct Counted {
+        begun: AtomicUsize,
+        done: AtomicUsize,
+        last: Option<usize>,
+    }
+
+    impl Progress for Counted {
+        fn begin(&self, pieces: usize) {
+            self.begun.store(pieces, Ordering::Relaxed);
+        }
+
+        fn advance(&self, pieces: usize) -> Result<(), Cancelled> {
+            let before = self.done.fetch_add(pieces, Ordering::Relaxed);
+            match self.last {
+                Some(last) if before + pieces > last => Err(Cancelled),
+                _ => Ok(()),
+            }
+        }
+    }
+
+    #[test]
+    fn a_study_ends_where_its_caller_says_so() {
+        let text = r#"{ "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1 } }, "position": [0, 0, -5] } ] }"#;
+        let scene = Scene::from_json(text).unwrap();
+        let (models, _) = crate::jobs::load_models(&scene, ".".as_ref()).unwrap();
+        let size = PictureSize::new(8, 8).unwrap();
+        let camera = Camera::new(size, Projection::FullSky, glam::DVec3::NEG_Z).unwrap();
+        let settings = CostSettings {
+            tolerances: vec![Tolerance::relative(0.1).unwrap()],
+            rays: Some(RaySettings::new(vec![camera])),
+            samples: NonZeroUsize::MIN,
+            ..CostSettings::default()
+        };
+        for last in 0..settings.pieces() {
+            let counted = Counted {
+                last: Some(last),
+                ..Counted::default()
+            };
+            let ended = CostStudy::new(&scene, &models, &settings, &counted);
+            assert!(matches!(ended, Err(StudyError::Cancelled(_))), "{last}");
+            assert_eq!(counted.done.into_inner(), last + 1);
+        }
+        CostStudy::new(&scene, &models, &settings, &()).unwrap();
     }
 
     #[test]
@@ -269,7 +325,7 @@ mod tests {
                 rays,
                 ..CostSettings::default()
             };
-            CostStudy::new(&scene, models, &settings, || ())
+            CostStudy::new(&scene, models, &settings, &())
                 .unwrap_err()
                 .to_string()
         };

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::mesh_cost::median;
 use super::random::Random;
+use crate::jobs::{Cancelled, Progress};
 use crate::pipeline::PlacedScene;
 use crate::render::{Camera, PictureOptions, Scenery, Textures, Viewpoint, grid_places};
 
@@ -122,14 +123,15 @@ pub struct RayCost {
 /// Pictures of all steps, one after the other, as the linear light of their pixels.
 type Light = Vec<Vec3>;
 
-/// Studies each of `samples`, the fewest first and at least one, with one camera for each step; `done` is called after each picture.
+/// Studies each of `samples`, the fewest first and at least one, with one camera for each step; `progress`
+/// advances by one after each picture.
 pub(super) fn ray_costs(
     placed: &PlacedScene,
     settings: &RaySettings,
     samples: &[u32],
     repeats: usize,
-    mut done: impl FnMut(),
-) -> (Pictures, Vec<RayCost>) {
+    progress: &dyn Progress,
+) -> Result<(Pictures, Vec<RayCost>), Cancelled> {
     let cameras = &settings.cameras[..];
     let steps = placed.scene().steps().len();
     let size = cameras[0].size();
@@ -144,9 +146,11 @@ pub(super) fn ray_costs(
         placed,
         cameras,
         scenery,
+        progress,
     };
     let finer = finest.saturating_mul(REFERENCE_FINER);
-    let references = REFERENCES.map(|number| studio.reference(finer, number, &mut done));
+    let [first, second] = REFERENCES.map(|number| studio.reference(finer, number));
+    let references = [first?, second?];
     let pictures = Pictures {
         count: steps,
         width: size.width(),
@@ -159,7 +163,7 @@ pub(super) fn ray_costs(
         let mut light = Light::new();
         for _ in 0..repeats {
             let start = Instant::now();
-            light = studio.all(&mut done, |_, _| grid_places(samples));
+            light = studio.all(|_, _| grid_places(samples))?;
             times.push(start.elapsed().as_secs_f64());
         }
         let samples_per_pixel = u64::from(samples).pow(2);
@@ -170,7 +174,7 @@ pub(super) fn ray_costs(
             uncertainty,
             largest,
         } = Errors::new(&light, &references);
-        RayCost {
+        Ok(RayCost {
             samples,
             samples_per_pixel,
             rays,
@@ -179,10 +183,10 @@ pub(super) fn ray_costs(
             error: mean,
             error_uncertainty: uncertainty,
             largest_error: largest,
-        }
+        })
     });
-    let costs = costs.collect();
-    (pictures, costs)
+    let costs = costs.collect::<Result<_, _>>()?;
+    Ok((pictures, costs))
 }
 
 /// Everything at rest, and who looks at it.
@@ -190,32 +194,31 @@ struct Studio<'a> {
     placed: &'a PlacedScene,
     cameras: &'a [Camera],
     scenery: Scenery,
+    progress: &'a dyn Progress,
 }
 
 impl Studio<'_> {
-    /// The mean over `places` of a step and a pixel; `done` is called after each step.
+    /// The mean over `places` of a step and a pixel.
     fn all<P: Iterator<Item = DVec2>>(
         &self,
-        mut done: impl FnMut(),
         places: impl Fn(usize, usize) -> P + Sync,
-    ) -> Light {
+    ) -> Result<Light, Cancelled> {
         let scene = self.placed.scene();
-        let steps = (0..scene.steps().len()).zip(self.cameras);
-        let light = steps.flat_map(|(step, camera)| {
+        let mut light = Light::new();
+        for (step, camera) in (0..scene.steps().len()).zip(self.cameras) {
             let moment = scene.moment(step);
             let viewpoint = Viewpoint::Observer(&moment);
             let options = PictureOptions::default();
             let places = |pixel| places(step, pixel);
-            let light = self.scenery.light(camera, viewpoint, options, places);
-            done();
-            light
-        });
-        light.collect()
+            light.extend(self.scenery.light(camera, viewpoint, options, places));
+            self.progress.advance(1)?;
+        }
+        Ok(light)
     }
 
     /// A random place in each of `finer` by `finer` squares of a pixel, others for each `number`.
-    fn reference(&self, finer: u32, number: usize, done: impl FnMut()) -> Light {
-        self.all(done, |step, pixel| {
+    fn reference(&self, finer: u32, number: usize) -> Result<Light, Cancelled> {
+        self.all(|step, pixel| {
             // A picture has fewer than 2^32 pixels: no two seeds are the same.
             let mut random = Random::new((((2 * step + number) as u64) << 32) + pixel as u64);
             grid_places(finer).map(move |middle| {

@@ -102,8 +102,8 @@ pub enum WriteError {
     /// There are no photosurfaces.
     #[error(transparent)]
     PlacedScene(#[from] PlacedSceneError),
-    /// All writing has been abandoned: see [`abandon_writes`](crate::abandon_writes).
-    #[error("cancelled: all writing has been abandoned")]
+    /// Whoever asked for the file has ended the work, or all writing: see [`abandon_writes`](crate::abandon_writes).
+    #[error("cancelled")]
     Cancelled,
     /// The operating system says no to a stream.
     #[error("cannot write")]

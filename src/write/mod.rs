@@ -3,6 +3,7 @@
 mod error;
 mod export;
 mod file;
+mod format;
 mod gltf;
 mod layer;
 mod pack;
@@ -15,7 +16,7 @@ mod text;
 pub use error::WriteError;
 pub use export::{Export, Playback};
 pub use file::{Target, abandon_writes, destination, write_whole, write_whole_target};
+pub use format::Format;
 pub use gltf::{GltfFile, GltfOutput, replaced_data, write_glb, write_gltf, write_whole_gltf};
 pub use ply::write_ply;
 pub use report::{Report, StageTime};
-pub use size::Format;

@@ -18,7 +18,7 @@ pub struct Report {
 /// How long a stage took.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StageTime {
-    /// Which placed.
+    /// Which stage.
     pub name: &'static str,
     /// Wall clock. Where stages overlap, that of the one which the others waited for: together they are what the
     /// whole took.

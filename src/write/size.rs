@@ -2,33 +2,13 @@
 
 use std::collections::HashSet;
 
-use super::WriteError;
+use super::{Format, WriteError};
 use crate::material::Part;
 use crate::mesh::Mesh;
 use crate::pipeline::PlacedScene;
-use crate::scene::{Attributes, Object, Scene, Source};
-
-/// A format that photosurfaces are written in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Binary glTF, one file.
-    Glb,
-    /// glTF as JSON with its data in a file beside it.
-    Gltf,
-    /// Binary PLY.
-    Ply,
-}
+use crate::scene::{Object, Source};
 
 impl Format {
-    /// What a file of the scene holds of every vertex: what the scene asks for, and in a PLY the Doppler factor.
-    pub fn attributes(self, scene: &Scene) -> Attributes {
-        let asked_for = scene.attributes();
-        Attributes {
-            doppler: asked_for.doppler || self == Self::Ply,
-            ..asked_for
-        }
-    }
-
     /// How many bytes a file of `steps` steps of the placed scene has at least: its numbers and images, without the
     /// words around them, which are few.
     ///
@@ -126,7 +106,7 @@ mod tests {
     use crate::jobs::load_models;
     use crate::material::Model;
     use crate::pipeline::SurfaceOptions;
-    use crate::scene::Observer;
+    use crate::scene::{Observer, Scene};
 
     #[test]
     fn the_least_size_is_just_below_that_of_the_file() {

@@ -44,6 +44,7 @@ mod import {
 mod export {
     mod animation;
     mod hard_properties;
+    mod jobs;
     mod materials;
     mod seams;
 }

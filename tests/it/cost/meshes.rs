@@ -51,8 +51,8 @@ fn assert_consistent(row: &Value) {
         "{row:#}"
     );
     assert!(made("file_bytes") > 12.0 * made("triangles"), "{row:#}");
-    for placed in ["predict", "photosurface", "write"] {
-        assert!(made(&format!("seconds/{placed}")) > 0.0, "{row:#}");
+    for stage in ["predict", "photosurface", "write"] {
+        assert!(made(&format!("seconds/{stage}")) > 0.0, "{row:#}");
     }
 }
 
@@ -229,9 +229,9 @@ fn table_csv_and_json_say_the_same() {
         ] {
             assert_eq!(written(name), made[name].as_f64(), "{name}");
         }
-        for placed in ["predict", "photosurface", "write"] {
-            let seconds = number(row, &format!("/made/seconds/{placed}"));
-            assert_eq!(written(&format!("{placed}_seconds")), Some(seconds));
+        for stage in ["predict", "photosurface", "write"] {
+            let seconds = number(row, &format!("/made/seconds/{stage}"));
+            assert_eq!(written(&format!("{stage}_seconds")), Some(seconds));
         }
         assert_eq!(
             written("uniform_triangles"),

@@ -4,7 +4,8 @@ use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::mpsc::{Receiver, sync_channel};
 
-use photosurface::{Photosurface, PlacedScene, PlacedSceneError, SurfaceOptions, WriteError};
+use crate::pipeline::{Photosurface, PlacedScene, PlacedSceneError, SurfaceOptions};
+use crate::write::WriteError;
 
 /// Triangles of steps that are made ahead, about, where that is more than one step: enough to keep cores busy, and a
 /// few megabytes, so that many steps take hardly more memory than two.
@@ -12,7 +13,7 @@ const MADE_AHEAD: usize = 100_000;
 
 /// Steps of more triangles are made one after the other: what is written of them is little against what they take to
 /// make, in which all cores take part, and in memory.
-const MOST_TO_HAVE_TWO: usize = 500_000;
+const MAX_TO_HAVE_TWO: usize = 500_000;
 
 /// Makes the photosurfaces of some steps and hands them to `put` in their order. While those of one step are put away
 /// the next are made: one step, or as many as there are cores where they are small.
@@ -29,7 +30,7 @@ pub(super) fn in_order(
     let parts = placed.objects().flat_map(|(_, parts)| parts);
     let at_rest = parts.map(|(_, part)| part.mesh().triangles().len()).sum();
     // Until one step is made nobody knows what it comes to.
-    let (mut most, mut ahead) = (at_rest, steps_ahead(at_rest).min(1));
+    let (mut largest, mut ahead) = (at_rest, steps_ahead(at_rest).min(1));
     let mut begun: VecDeque<Receiver<Result<Vec<Photosurface>, PlacedSceneError>>> =
         VecDeque::new();
     rayon::in_place_scope(|scope| {
@@ -61,8 +62,8 @@ pub(super) fn in_order(
                 }
                 None => placed.photosurfaces(step, wanted)?.try_for_each(&mut put)?,
             }
-            most = most.max(triangles);
-            ahead = steps_ahead(most);
+            largest = largest.max(triangles);
+            ahead = steps_ahead(largest);
         }
         Ok(())
     })
@@ -70,7 +71,7 @@ pub(super) fn in_order(
 
 /// How many steps are made ahead where each has so many triangles.
 fn steps_ahead(triangles: usize) -> usize {
-    if triangles > MOST_TO_HAVE_TWO {
+    if triangles > MAX_TO_HAVE_TWO {
         return 0;
     }
     let fitting = MADE_AHEAD / triangles.max(1);

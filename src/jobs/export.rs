@@ -1,0 +1,425 @@
+//! The export: photosurfaces of a placed scene as files, in any format, for one tolerance or several.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use super::clock::Clock;
+use super::files::{check_outputs, file_for_each_step, with_suffix};
+use super::work::Work;
+use super::{DEFAULT_MAX_TRIANGLES, Fitted, OutputError, Progress, Tally};
+use crate::pipeline::{PlacedScene, SurfaceOptions};
+use crate::scene::Tolerance;
+use crate::write::{Format, Playback, Report, StageTime, WriteError, replaced_data, write_whole};
+
+/// Frames a second that an animation may have.
+const FRAMES_PER_SECOND: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+
+/// What an export makes of a placed scene.
+#[derive(Clone, Debug)]
+pub struct ExportSettings {
+    /// Whether each step has a file of its own: `out_step000.glb`, `out_step001.glb`, ...
+    pub split: bool,
+    /// How the steps of one file follow each other; `None` for all at once.
+    pub playback: Option<Playback>,
+    /// Levels of detail: tolerances for all objects, each with files of its own, `out_lod0.glb`, `out_lod1.glb`, ...;
+    /// none for the tolerances of the scene.
+    pub levels: Vec<Tolerance>,
+    /// Whether meshes are refined until they are within the tolerance; if not, every vertex of the source stays the only
+    /// one, and certificates tell how far off the meshes are.
+    pub subdivide: bool,
+    /// How many triangles all photosurfaces of one level have together at most. If a tolerance needs more, the
+    /// largest gaps are closed first and the result is not certified; triangles of a source stay, even if they are more.
+    pub max_triangles: u64,
+    /// Where a JSON [`Report`] goes, if there is to be one; each level has its own.
+    pub report: Option<PathBuf>,
+    /// Whether [`Exported`] has the facts of every photosurface: about a kilobyte of memory for each.
+    pub keep_facts: bool,
+    /// Stages that went before, with their times, for the report.
+    pub stages_before: Vec<StageTime>,
+}
+
+impl Default for ExportSettings {
+    /// All steps in one file, refined within the tolerances of the scene, by at most [`DEFAULT_MAX_TRIANGLES`].
+    fn default() -> Self {
+        Self {
+            split: false,
+            playback: None,
+            levels: vec![],
+            subdivide: true,
+            max_triangles: DEFAULT_MAX_TRIANGLES,
+            report: None,
+            keep_facts: true,
+            stages_before: vec![],
+        }
+    }
+}
+
+/// Why an export has no result.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// The name of the file says no format.
+    #[error("{}: unknown extension, expected .glb, .gltf or .ply", .0.display())]
+    UnknownExtension(PathBuf),
+    /// An animation in a format that has no time.
+    #[error("a .ply has no time, expected .glb or .gltf for an animation")]
+    NoTime,
+    /// An animation of one step.
+    #[error("the scene has one step, expected at least two for an animation")]
+    OneStep,
+    /// A number of frames a second that is out of range.
+    #[error("{0:?} frames a second, expected a number from 0.001 to 1000")]
+    FramesPerSecond(f64),
+    /// Attributes, which differ from step to step, in one mesh for all steps.
+    #[error(
+        "an animation by morphing shows one mesh, and attributes differ from step to step; expected no attributes"
+    )]
+    MorphingAttributes,
+    /// An animation and a file for each step.
+    #[error("an animation is one file, expected it without a file for each step")]
+    SplitPlayback,
+    /// Two levels of detail of one tolerance.
+    #[error(
+        "the tolerance {0} is there twice among the levels of detail, expected each of them once"
+    )]
+    RepeatedLevel(Tolerance),
+    /// A file that must not be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A file that cannot hold the photosurfaces, or cannot be written.
+    #[error("{}", file.display())]
+    File {
+        /// Which file.
+        file: PathBuf,
+        /// Why.
+        source: WriteError,
+    },
+    /// The caller ended the export: whole files stay, nothing else does.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl ExportError {
+    /// The error of a file; errors that name a file do not name it twice.
+    pub(crate) fn of_file(file: &Path, source: WriteError) -> Self {
+        match source {
+            WriteError::Cancelled => Self::Cancelled,
+            WriteError::Io { .. } => Self::Output(source.into()),
+            source => Self::File {
+                file: file.to_owned(),
+                source,
+            },
+        }
+    }
+}
+
+/// What an export has written at one level of detail.
+#[derive(Clone, Debug)]
+pub struct Exported {
+    /// The files of photosurfaces: one, or one for each step.
+    pub files: Vec<PathBuf>,
+    /// The files of data that belong to those, where they are `.gltf`.
+    pub data_files: Vec<PathBuf>,
+    /// What was made, in sum.
+    pub tally: Tally,
+    /// What was made, one by one if [`ExportSettings::keep_facts`] says so or there is a report, and how long each stage took.
+    pub report: Report,
+}
+
+/// Writes photosurfaces of a placed scene to `path`, in the format that its extension says (.glb, .gltf or .ply), with
+/// the attributes that the scene asks for; says what each level of detail came to.
+///
+/// Memory does not grow with the number of steps, but for a `.ply`. Each file appears whole or not at all, and what
+/// stood there stays until then.
+///
+/// # Errors
+///
+/// Settings that do not go together or with the format; a file that cannot be written, or cannot hold what is seen,
+/// which is found out before any of the work where that is possible; the end by `progress`.
+pub fn export(
+    placed: &PlacedScene,
+    settings: &ExportSettings,
+    path: &Path,
+    progress: &dyn Progress,
+) -> Result<Vec<Exported>, ExportError> {
+    let format = Format::of_path(path);
+    let format = format.ok_or_else(|| ExportError::UnknownExtension(path.to_owned()))?;
+    let levels = export_levels(placed, settings, format, path)?;
+    check_outputs(levels.iter().flat_map(ExportLevel::outputs), &[])?;
+    for level in &levels {
+        level.check()?;
+    }
+    progress.begin(levels.iter().map(ExportLevel::pieces).sum());
+    let write = |level: ExportLevel| {
+        let fitted = level.fit();
+        let report = fitted.level.report.clone();
+        fitted.write(progress, |made| match report {
+            Some(path) => write_report(&path, made),
+            None => Ok(()),
+        })
+    };
+    levels.into_iter().map(write).collect()
+}
+
+/// Writes a report as JSON text; the file appears whole or not at all.
+///
+/// # Errors
+///
+/// The file cannot be written.
+pub fn write_report(path: &Path, report: &Report) -> Result<(), WriteError> {
+    let text = report.to_json() + "\n";
+    write_whole(path, |writer| Ok(writer.write_all(text.as_bytes())?))
+}
+
+/// One level of detail of an export, before its work.
+#[derive(Clone, Debug)]
+pub struct ExportLevel {
+    placed: PlacedScene,
+    settings: ExportSettings,
+    format: Format,
+    /// One for each step, or one for all.
+    files: Vec<PathBuf>,
+    report: Option<PathBuf>,
+}
+
+/// The levels of detail of an export in a given format: [`export`] step by step, for callers that have something to say
+/// or to decide between.
+///
+/// # Errors
+///
+/// Settings that do not go together or with the format.
+pub fn export_levels(
+    placed: &PlacedScene,
+    settings: &ExportSettings,
+    format: Format,
+    path: &Path,
+) -> Result<Vec<ExportLevel>, ExportError> {
+    check_playback(placed, settings, format)?;
+    let level = |placed: PlacedScene, suffix: &str| {
+        let path = with_suffix(path, suffix);
+        ExportLevel {
+            files: match settings.split {
+                true => file_for_each_step(&path, placed.scene().steps().len()),
+                false => vec![path],
+            },
+            report: settings
+                .report
+                .as_ref()
+                .map(|report| with_suffix(report, suffix)),
+            settings: settings.clone(),
+            placed,
+            format,
+        }
+    };
+    if settings.levels.is_empty() {
+        return Ok(vec![level(placed.clone(), "")]);
+    }
+    let levels = levels_of_detail(placed, &settings.levels)?.into_iter();
+    let levels = levels.enumerate();
+    let levels = levels.map(|(index, placed)| level(placed, &format!("_lod{index}")));
+    Ok(levels.collect())
+}
+
+/// The scene with each of these tolerances for all objects.
+///
+/// # Errors
+///
+/// One tolerance twice.
+pub fn levels_of_detail(
+    placed: &PlacedScene,
+    tolerances: &[Tolerance],
+) -> Result<Vec<PlacedScene>, ExportError> {
+    for (level, tolerance) in tolerances.iter().enumerate() {
+        if tolerances[..level].contains(tolerance) {
+            return Err(ExportError::RepeatedLevel(*tolerance));
+        }
+    }
+    let level = |&tolerance| placed.clone().with_tolerance_for_all(tolerance);
+    Ok(tolerances.iter().map(level).collect())
+}
+
+fn check_playback(
+    placed: &PlacedScene,
+    settings: &ExportSettings,
+    format: Format,
+) -> Result<(), ExportError> {
+    let Some(playback) = settings.playback else {
+        return Ok(());
+    };
+    let frames_per_second = playback.frames_per_second();
+    if format == Format::Ply {
+        Err(ExportError::NoTime)
+    } else if settings.split {
+        Err(ExportError::SplitPlayback)
+    } else if placed.scene().steps().len() < 2 {
+        Err(ExportError::OneStep)
+    } else if !FRAMES_PER_SECOND.contains(&frames_per_second) {
+        Err(ExportError::FramesPerSecond(frames_per_second))
+    } else if matches!(playback, Playback::Morph { .. }) && !placed.scene().attributes().is_empty()
+    {
+        Err(ExportError::MorphingAttributes)
+    } else {
+        Ok(())
+    }
+}
+
+impl ExportLevel {
+    /// The scene, with the tolerances of this level.
+    pub fn placed(&self) -> &PlacedScene {
+        &self.placed
+    }
+
+    /// The files of photosurfaces that will be written.
+    pub fn files(&self) -> &[PathBuf] {
+        &self.files
+    }
+
+    /// Where the report of this level goes, if there is to be one.
+    pub fn report(&self) -> Option<&Path> {
+        self.report.as_deref()
+    }
+
+    /// Every file that will be written over or removed. The data of a `.gltf` has a new name, made of its content; the
+    /// data of the file that is replaced goes.
+    pub fn outputs(&self) -> impl Iterator<Item = PathBuf> {
+        let files = self.files.iter();
+        let gltf = files.clone().filter(|_| self.format == Format::Gltf);
+        let replaced = gltf.filter_map(|file| replaced_data(file));
+        files.cloned().chain(replaced).chain(self.report.clone())
+    }
+
+    /// How many pieces of work the level is: its photosurfaces.
+    pub fn pieces(&self) -> usize {
+        let parts: usize = self.placed.objects().map(|(_, parts)| parts.len()).sum();
+        parts * self.placed.scene().steps().len()
+    }
+
+    /// Whether a file can hold what is seen, as far as that is known before the work.
+    ///
+    /// # Errors
+    ///
+    /// More bytes or vertices than the format has room for, or numbers beyond its range.
+    pub fn check(&self) -> Result<(), ExportError> {
+        let steps = match self.settings.split {
+            true => 1,
+            false => self.placed.scene().steps().len(),
+        };
+        let fits = self.format.least_size(&self.placed, steps);
+        fits.and_then(|_| self.format.check_range(&self.placed))
+            .map_err(|source| ExportError::of_file(&self.files[0], source))
+    }
+
+    /// The level with aims that are within the budget.
+    pub fn fit(self) -> FittedExport {
+        let mut clock = Clock::after(&self.settings.stages_before);
+        let wanted = SurfaceOptions {
+            subdivide: self.settings.subdivide,
+            ..self.format.surface_options(self.placed.scene())
+        };
+        let fitted = wanted
+            .subdivide
+            .then(|| Fitted::new(self.placed.clone(), wanted, self.settings.max_triangles));
+        clock.stop("predict");
+        FittedExport {
+            level: self,
+            wanted,
+            fitted,
+            clock,
+        }
+    }
+}
+
+/// One level of detail of an export within its budget, before its photosurfaces are made.
+#[derive(Clone, Debug)]
+pub struct FittedExport {
+    level: ExportLevel,
+    wanted: SurfaceOptions,
+    fitted: Option<Fitted>,
+    clock: Clock,
+}
+
+impl FittedExport {
+    /// What the tolerances need and what the budget leaves of them; `None` where nothing is subdivided.
+    pub fn fitted(&self) -> Option<&Fitted> {
+        self.fitted.as_ref()
+    }
+
+    /// Makes and writes all photosurfaces, [`ExportLevel::pieces`] of them.
+    ///
+    /// `before_it_appears` has the last word when all of the file is written and it is about to appear, or, of a file for
+    /// each step, when all are there: where it fails, so does the export, and the one file does not appear.
+    ///
+    /// # Errors
+    ///
+    /// A file cannot be written or hold a number; the end by `progress`.
+    pub fn write(
+        self,
+        progress: &dyn Progress,
+        before_it_appears: impl FnOnce(&Report) -> Result<(), WriteError>,
+    ) -> Result<Exported, ExportError> {
+        let mut work = self.work(progress);
+        let files = &self.level.files;
+        let steps = work.placed.scene().steps().len();
+        if self.level.settings.split {
+            for (step, file) in files.iter().enumerate() {
+                let written = work.write_file(file, step..step + 1, |_| Ok(()));
+                written.map_err(|error| ExportError::of_file(file, error))?;
+            }
+            let done = before_it_appears(&work.report());
+            done.map_err(|error| ExportError::of_file(&files[0], error))?;
+        } else {
+            let written = work.write_file(&files[0], 0..steps, |work| {
+                before_it_appears(&work.report())
+            });
+            written.map_err(|error| ExportError::of_file(&files[0], error))?;
+        }
+        Ok(exported(work, files.clone()))
+    }
+
+    /// Makes all photosurfaces and writes them to a stream, as a PLY if that is the format, else as a GLB.
+    ///
+    /// # Errors
+    ///
+    /// The stream fails, or the format cannot hold a number; the end by `progress`.
+    pub fn write_to(
+        self,
+        out: &mut dyn Write,
+        progress: &dyn Progress,
+    ) -> Result<Exported, WriteError> {
+        let mut work = self.work(progress);
+        let steps = work.placed.scene().steps().len();
+        work.write_stream(out, 0..steps)?;
+        Ok(exported(work, vec![]))
+    }
+
+    fn work<'a>(&'a self, progress: &'a dyn Progress) -> Work<'a> {
+        let level = &self.level;
+        let placed = self
+            .fitted
+            .as_ref()
+            .map_or(&level.placed, |fitted| &fitted.placed);
+        let has_report = level.report.is_some();
+        Work {
+            placed,
+            wanted: self.wanted,
+            format: level.format,
+            playback: level.settings.playback,
+            progress,
+            clock: self.clock.resumed(),
+            tally: Tally::default(),
+            facts: (level.settings.keep_facts || has_report).then(Vec::new),
+            data_files: vec![],
+        }
+    }
+}
+
+fn exported(mut work: Work<'_>, files: Vec<PathBuf>) -> Exported {
+    Exported {
+        files,
+        data_files: std::mem::take(&mut work.data_files),
+        tally: std::mem::take(&mut work.tally),
+        report: work.into_report(),
+    }
+}

@@ -1,0 +1,164 @@
+//! Photosurfaces made and written one after the other, in any format.
+
+use std::io::Write;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use super::ahead::in_order;
+use super::clock::Clock;
+use super::{Cancelled, Progress, Tally};
+use crate::pipeline::{Facts, PlacedScene, SurfaceOptions};
+use crate::write::{
+    Export, Format, GltfFile, GltfOutput, Playback, Report, Target, WriteError, write_ply,
+    write_whole, write_whole_gltf, write_whole_target,
+};
+
+/// Photosurfaces in the making, and what has been made of them so far.
+pub(super) struct Work<'a> {
+    pub(super) placed: &'a PlacedScene,
+    pub(super) wanted: SurfaceOptions,
+    pub(super) format: Format,
+    pub(super) playback: Option<Playback>,
+    pub(super) progress: &'a dyn Progress,
+    pub(super) clock: Clock,
+    pub(super) tally: Tally,
+    /// Of every photosurface, if they are to be kept.
+    pub(super) facts: Option<Vec<Facts>>,
+    /// Files beside a `.gltf`.
+    pub(super) data_files: Vec<PathBuf>,
+}
+
+impl Work<'_> {
+    fn is_morphing(&self) -> bool {
+        matches!(self.playback, Some(Playback::Morph { .. }))
+    }
+
+    fn count(&mut self, facts: &Facts) -> Result<(), WriteError> {
+        // Where all steps are one mesh, its triangles are there once.
+        let first = facts.step == 0 || !self.is_morphing();
+        self.tally
+            .add(facts, if first { facts.triangles } else { 0 });
+        if let Some(kept) = &mut self.facts {
+            kept.push(facts.clone());
+        }
+        let told = self.progress.advance(1);
+        told.map_err(|Cancelled| WriteError::Cancelled)
+    }
+
+    /// Makes the photosurfaces of some steps and puts each into the file, so that memory does not grow with them.
+    fn fill(&mut self, file: &mut GltfFile<'_>, steps: Range<usize>) -> Result<(), WriteError> {
+        let (placed, wanted) = (self.placed, self.wanted);
+        if self.is_morphing() {
+            for part in placed.morphing(wanted) {
+                part.iter().try_for_each(|step| self.count(&step.facts))?;
+                self.clock.stop("photosurface");
+                file.add_morphing(&part)?;
+                self.clock.stop("write");
+            }
+            return Ok(());
+        }
+        in_order(placed, wanted, steps, |photosurface| {
+            self.count(&photosurface.facts)?;
+            self.clock.stop("photosurface");
+            file.add(&photosurface)?;
+            self.clock.stop("write");
+            Ok(())
+        })
+    }
+
+    /// A GLB or both parts of a `.gltf`.
+    fn gltf(&mut self, steps: Range<usize>, output: GltfOutput<'_>) -> Result<(), WriteError> {
+        let (scene, attributes) = (self.placed.facts(), self.wanted.attributes);
+        let marker = self.placed.marker();
+        let mut file = GltfFile::new(output, &scene, marker, attributes, self.playback)?;
+        self.fill(&mut file, steps)?;
+        file.finish()?;
+        self.clock.stop("write");
+        Ok(())
+    }
+
+    fn glb(&mut self, steps: Range<usize>, target: Target<'_>) -> Result<(), WriteError> {
+        let parts: usize = self.placed.objects().map(|(_, parts)| parts.len()).sum();
+        let meshes = parts * if self.is_morphing() { 1 } else { steps.len() };
+        self.gltf(steps, GltfOutput::glb(target, meshes + 1))
+    }
+
+    /// All at once: the format says first how many vertices there are.
+    fn ply(&mut self, steps: Range<usize>, out: &mut dyn Write) -> Result<(), WriteError> {
+        let (placed, wanted) = (self.placed, self.wanted);
+        let mut photosurfaces = vec![];
+        for step in steps {
+            for photosurface in placed.photosurfaces(step, wanted)? {
+                self.count(&photosurface.facts)?;
+                photosurfaces.push(photosurface);
+            }
+        }
+        self.clock.stop("photosurface");
+        let export = Export {
+            scene: &placed.facts(),
+            marker: placed.marker(),
+            photosurfaces: &photosurfaces,
+            playback: None,
+        };
+        write_ply(&export, &mut *out)?;
+        self.clock.stop("write");
+        Ok(out.flush()?)
+    }
+
+    /// Writes a file of some steps, and does what is left to do when all of it is written and it is about to appear.
+    pub(super) fn write_file(
+        &mut self,
+        path: &Path,
+        steps: Range<usize>,
+        before_it_appears: impl FnOnce(&Self) -> Result<(), WriteError>,
+    ) -> Result<(), WriteError> {
+        match self.format {
+            Format::Glb => write_whole_target(path, |target| {
+                self.glb(steps, target)?;
+                before_it_appears(self)
+            }),
+            Format::Ply => write_whole(path, |writer| {
+                self.ply(steps, writer)?;
+                before_it_appears(self)
+            }),
+            Format::Gltf => {
+                let data = write_whole_gltf(path, |output| {
+                    self.gltf(steps, output)?;
+                    before_it_appears(self)
+                })?;
+                self.data_files.push(data);
+                Ok(())
+            }
+        }
+    }
+
+    /// Writes some steps to a stream: a `.ply`, else a GLB.
+    pub(super) fn write_stream(
+        &mut self,
+        out: &mut dyn Write,
+        steps: Range<usize>,
+    ) -> Result<(), WriteError> {
+        match self.format {
+            Format::Ply => self.ply(steps, out),
+            Format::Glb | Format::Gltf => self.glb(steps, Target::Stream(out)),
+        }
+    }
+
+    /// What has been made so far, and how long it took.
+    pub(super) fn report(&self) -> Report {
+        Report {
+            scene: self.placed.facts(),
+            objects: self.facts.clone().unwrap_or_default(),
+            stages: self.clock.stages().to_vec(),
+        }
+    }
+
+    /// What has been made, and how long it took.
+    pub(super) fn into_report(self) -> Report {
+        Report {
+            scene: self.placed.facts(),
+            objects: self.facts.unwrap_or_default(),
+            stages: self.clock.stages().to_vec(),
+        }
+    }
+}
