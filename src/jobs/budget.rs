@@ -24,8 +24,7 @@ impl Fitted {
     /// Loosens the aims of a scene until its photosurfaces have at most `max_triangles` together, as
     /// [`PlacedScene::within_budget`] does.
     pub fn new(placed: PlacedScene, wanted: SurfaceOptions, max_triangles: u64) -> Self {
-        let needed = placed.predictions(wanted);
-        let (placed, loosening) = placed.within_budget(wanted, max_triangles);
+        let (placed, loosening, needed) = placed.fitted(wanted, max_triangles);
         if loosening.iter().all(|&times| times == 1.0) {
             return Self {
                 placed,

@@ -34,6 +34,9 @@ const MAX_HALVINGS: usize = 8;
 /// take a tolerance that says nothing any more.
 const SPENT_AT_LEAST: f64 = 1.05;
 
+/// What is predicted for each object, at each step that was looked at.
+type Forecast = Vec<Vec<Predicted>>;
+
 /// What one object will take, known in a fraction of the time that it takes to make it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prediction {
@@ -52,18 +55,28 @@ pub struct Prediction {
 impl PlacedScene {
     /// What each object will take, in the order of the scene.
     pub fn predictions(&self, wanted: SurfaceOptions) -> Vec<Prediction> {
+        self.predictions_by(&self.forecast(wanted))
+    }
+
+    /// What was predicted for each object, and for each step that was looked at.
+    fn forecast(&self, wanted: SurfaceOptions) -> Forecast {
         let objects = 0..self.objects.len();
         objects
-            .map(|object| {
-                let predicted = self.predict(object, wanted);
-                let most = self.max_triangles(object);
-                Prediction {
-                    triangles: predicted.triangles.min(most),
-                    triangles_in: predicted.before.min(most),
-                    reachable: predicted.reachable && predicted.triangles <= most,
-                }
-            })
+            .map(|object| self.predict_some(object, wanted))
             .collect()
+    }
+
+    fn predictions_by(&self, forecast: &[Vec<Predicted>]) -> Vec<Prediction> {
+        let predictions = forecast.iter().enumerate().map(|(object, at_some)| {
+            let predicted = self.all_steps(at_some);
+            let most = self.max_triangles(object);
+            Prediction {
+                triangles: predicted.triangles.min(most),
+                triangles_in: predicted.before.min(most),
+                reachable: predicted.reachable && predicted.triangles <= most,
+            }
+        });
+        predictions.collect()
     }
 
     /// The same placed scene with looser aims, so that all its photosurfaces together have at most `most` triangles; and for
@@ -78,13 +91,30 @@ impl PlacedScene {
     /// The limit holds exactly, also where a prediction is wrong: what is granted is known beforehand, and refinement
     /// stops when it is used up. Of [`PlacedScene::morphing`] it counts the one mesh of each part.
     #[must_use]
-    pub fn within_budget(mut self, wanted: SurfaceOptions, most: u64) -> (Self, Vec<f64>) {
+    pub fn within_budget(self, wanted: SurfaceOptions, max_triangles: u64) -> (Self, Vec<f64>) {
+        let (placed, loosening, _) = self.fitted(wanted, max_triangles);
+        (placed, loosening)
+    }
+
+    /// As [`PlacedScene::within_budget`], and what the tolerances themselves need.
+    pub(crate) fn fitted(
+        mut self,
+        wanted: SurfaceOptions,
+        most: u64,
+    ) -> (Self, Vec<f64>, Vec<Prediction>) {
         for placed_object in &mut self.objects {
             placed_object.granted = None;
         }
-        let needed = |placed: &Self, object| placed.predict(object, wanted).needed();
-        let mut objects: Vec<(usize, f64)> = (0..self.objects.len())
-            .map(|object| (object, needed(&self, object)))
+        let mut forecast = self.forecast(wanted);
+        let needs = self.predictions_by(&forecast);
+        let needed = |placed: &Self, object| {
+            let at_some = placed.predict_some(object, wanted);
+            placed.all_steps(&at_some).needed()
+        };
+        let mut objects: Vec<(usize, f64)> = forecast
+            .iter()
+            .map(|at_some| self.all_steps(at_some).needed())
+            .enumerate()
             .collect();
         objects.sort_by(|(_, a), (_, b)| a.total_cmp(b));
         let mut left = most as f64;
@@ -92,6 +122,7 @@ impl PlacedScene {
             let share = left / (objects.len() - done) as f64;
             if wanted.subdivide && need > share {
                 need = self.loosen(object, share, need, needed);
+                forecast[object] = self.predict_some(object, wanted);
             }
             left = (left - need).max(0.0);
         }
@@ -104,27 +135,26 @@ impl PlacedScene {
                 times => ADVISED * times,
             });
         let loosening = loosening.collect();
-        (self.granting(wanted, most), loosening)
+        if wanted.subdivide {
+            self.grant(&forecast, most);
+        }
+        (self, loosening, needs)
     }
 
-    /// The same placed scene with at most `most` triangles, or those of the source, and the same aims.
-    pub(crate) fn granting(mut self, wanted: SurfaceOptions, most: u64) -> Self {
-        if !wanted.subdivide {
-            return self;
-        }
+    /// Grants each object so many triangles at each step that all together are at most `most`, or those of the source.
+    fn grant(&mut self, forecast: &[Vec<Predicted>], most: u64) {
         let steps = self.scene.steps().len();
         let sources: Vec<u64> = (self.objects.iter())
             .map(|placed_object| placed_object.source_triangles)
             .collect();
         let all: u64 = sources.iter().sum();
         // What each object needs at each step beyond its source.
-        let needs: Vec<Vec<f64>> = (0..self.objects.len())
-            .map(|object| {
-                let at_some = self.predict_some(object, wanted);
+        let needs: Vec<Vec<f64>> = (forecast.iter().zip(&sources))
+            .map(|(at_some, &source)| {
                 let need = |step: usize| {
                     let last = (steps - 1).max(1) as f64;
                     let at = step as f64 / last * (at_some.len() - 1) as f64;
-                    let need = at_some[at.round() as usize].needed() - sources[object] as f64;
+                    let need = at_some[at.round() as usize].needed() - source as f64;
                     // Infinity and NaN are as good as all that there is.
                     if need < most as f64 {
                         need.max(0.0)
@@ -151,7 +181,6 @@ impl PlacedScene {
             let steps = steps.to_vec();
             placed_object.granted = Some(Granted { steps, together });
         }
-        self
     }
 
     /// The most that an object can have at all steps together.
@@ -220,9 +249,8 @@ impl PlacedScene {
         need
     }
 
-    /// All steps together.
-    fn predict(&self, object: usize, wanted: SurfaceOptions) -> Predicted {
-        let at_some = self.predict_some(object, wanted);
+    /// All steps together, by those that were looked at.
+    fn all_steps(&self, at_some: &[Predicted]) -> Predicted {
         let each = self.scene.steps().len() as f64 / at_some.len() as f64;
         let mut sum = Predicted {
             triangles: 0.0,
