@@ -4,12 +4,12 @@ use std::io::Write;
 
 use photosurface::{Format, PlacedScene, Prediction};
 
-use super::Status;
 use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, predicted, total};
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print_if_open, shown};
 use super::output::{FileFormat, or_ply};
+use super::status::Status;
 
 /// Validate a scene or a mesh, and say what an export would make
 ///

@@ -12,12 +12,12 @@ use photosurface::{
     Playback, Report, StageTime, WriteError, export_levels, write_report,
 };
 
-use super::Status;
 use super::accuracy::{AccuracyArgs, DetailArgs};
 use super::args::{InputArgs, ObserverArgs, number};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print, size, stdout_is_closed};
 use super::output::{Bar, FileFormat, check_destinations, from_first_to_last, is_stdout, or_ply};
+use super::status::Status;
 
 /// Write photosurfaces as meshes
 ///

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail, ensure};
 use photosurface::{Picture, PlacedScene, Precision, file_for_each_step, write_whole};
 
-use super::Status;
 use super::accuracy::AccuracyArgs;
 use super::args::{InputArgs, ObserverArgs};
 use super::camera::{CameraArgs, View};
@@ -14,6 +13,7 @@ use super::guides::GuideArgs;
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print};
 use super::output::{check_destinations, extension, from_first_to_last, is_stdout, progress_bar};
+use super::status::Status;
 use super::studio::Studio;
 
 /// Make pictures of what the observer sees, or of photosurfaces from outside

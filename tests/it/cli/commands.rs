@@ -462,7 +462,7 @@ fn the_report_and_the_extras_say_the_same() {
         .as_array()
         .unwrap()
         .iter()
-        .filter_map(|placed| placed["name"].as_str())
+        .filter_map(|stage| stage["name"].as_str())
         .collect();
     assert_eq!(stages, ["read", "predict", "photosurface", "write"]);
 }
@@ -480,7 +480,36 @@ fn the_same_bytes_on_every_run_and_with_any_number_of_threads() {
                 .success();
             files.push(workplace.read(&format!("out.{format}")));
         }
+        for threads in ["1", "3"] {
+            let arguments =
+                format!("--threads {threads} export --example {example} -o out.{format}");
+            workplace.run(&arguments).success();
+            files.push(workplace.read(&format!("out.{format}")));
+        }
         assert!(files.windows(2).all(|pair| pair[0] == pair[1]), "{format}");
+    }
+}
+
+#[test]
+fn every_command_computes_with_as_many_threads_as_it_is_told() {
+    let workplace = Workplace::with_ball();
+    let flags = "cost ball.json --only meshes --tolerances 1e-1 --samples 9 --repeats 1 --json -";
+    for threads in ["1", "3"] {
+        let flags = format!("{flags} --threads {threads}");
+        // The flag wins.
+        let run = workplace.run_with(&flags, b"", &[("RAYON_NUM_THREADS", "2")]);
+        let study: Value = serde_json::from_slice(&run.success().stdout).unwrap();
+        assert_eq!(study["threads"].to_string(), threads);
+    }
+    for (threads, said) in [
+        ("0", "at least 1"),
+        ("-1", "a whole number"),
+        ("many", "a whole number"),
+        ("1025", "--threads is 1025, expected at most 1024"),
+    ] {
+        let run = workplace.run(&format!("check ball.json --threads {threads}"));
+        assert_eq!(run.status, 2, "{run}");
+        assert!(run.stderr.contains(said), "{run}");
     }
 }
 

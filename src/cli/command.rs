@@ -1,0 +1,120 @@
+//! The command line as a whole: which commands there are, and what they have in common.
+
+use std::num::NonZeroUsize;
+use std::process::ExitCode;
+
+use anyhow::{Context, ensure};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Parser, Subcommand, ValueEnum};
+use rayon::ThreadPoolBuilder;
+
+use super::status::{INTERRUPTED, Status, ended};
+use super::{args, check, cost, example, export, messages, render, schema};
+
+/// More threads than any machine has cores are refused.
+const MAX_THREADS: NonZeroUsize = NonZeroUsize::MIN.saturating_add(1023);
+
+/// The apparent shape of fast-moving objects as real geometry.
+///
+/// An observer who moves near the speed of light receives light now. The places where that light was
+/// emitted, in the observer's frame, form a virtual object: the photosurface. photosurface computes it from
+/// ordinary meshes and writes it as glTF for Blender, MeshLab, three.js, trimesh and pyvista.
+///
+/// Units: the speed of light is 1; lengths and times share one unit. Coordinates are right-handed, y up.
+/// Results go to files, or to stdout with -o -; everything else goes to stderr.
+/// Exit status: 0 done and certified, 1 written but not certified (budget reached, subdivision off), for check that
+/// it would be, 2 an error, nothing written, 130 interrupted. Of several files, those that are finished stay.
+#[derive(Debug, Parser)]
+#[command(name = "photosurface", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// Compute with N threads at once [default: one for each core, or RAYON_NUM_THREADS of the environment]
+    #[arg(long, value_name = "N", global = true, value_parser = args::count, allow_hyphen_values = true, help_heading = "Work")]
+    threads: Option<NonZeroUsize>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Export(export::ExportArgs),
+    Render(render::RenderArgs),
+    Check(check::CheckArgs),
+    Cost(cost::CostArgs),
+    Example(example::ExampleArgs),
+    Schema(schema::SchemaArgs),
+}
+
+/// Runs the command line of this process.
+pub(crate) fn run() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) if error.use_stderr() => advised(error).exit(),
+        // Help and the version are results like any other.
+        Err(asked_for) => return ended(print_help(&asked_for)),
+    };
+    // A handler that cannot be set leaves the system's own, which ends the program too.
+    let _ = ctrlc::set_handler(|| {
+        photosurface::abandon_writes();
+        std::process::exit(INTERRUPTED.into());
+    });
+    let threads = cli.threads.map_or(Ok(()), compute_with);
+    ended(threads.and_then(|()| cli.command.run()))
+}
+
+impl Command {
+    fn run(&self) -> anyhow::Result<Status> {
+        match self {
+            Self::Export(args) => export::run(args),
+            Self::Render(args) => render::run(args),
+            Self::Check(args) => check::run(args),
+            Self::Cost(args) => cost::run(args).map(|()| Status::Done),
+            Self::Example(args) => example::run(args).map(|()| Status::Done),
+            Self::Schema(args) => schema::run(args).map(|()| Status::Done),
+        }
+    }
+}
+
+/// Has all work of this process done by so many threads.
+fn compute_with(threads: NonZeroUsize) -> anyhow::Result<()> {
+    ensure!(
+        threads <= MAX_THREADS,
+        "--threads is {threads}, expected at most {MAX_THREADS}"
+    );
+    let pool = ThreadPoolBuilder::new().num_threads(threads.get());
+    pool.build_global().context("--threads")
+}
+
+/// Prints what was asked for in place of a command.
+fn print_help(help: &clap::Error) -> anyhow::Result<Status> {
+    messages::print(|_| help.print().context("stdout"))?;
+    Ok(Status::Done)
+}
+
+/// An error of the command line with advice that helps.
+fn advised(mut error: clap::Error) -> clap::Error {
+    if error.kind() != ErrorKind::UnknownArgument {
+        return error;
+    }
+    let Some(ContextValue::String(argument)) = error.get(ContextKind::InvalidArg) else {
+        return error;
+    };
+    let animation = export::Animate::from_str(argument, false).is_ok();
+    let tip = format!("a similar argument exists: '--animate={argument}'");
+    // To pass a flag "as a value, use '-- --flag'" would make a file name of it.
+    error.remove(ContextKind::Suggested);
+    if animation {
+        let tip = ContextValue::StyledStrs(vec![tip.into()]);
+        error.insert(ContextKind::Suggested, tip);
+    }
+    error
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        super::Cli::command().debug_assert();
+    }
+}
