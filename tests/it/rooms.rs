@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const COMMAND: &str = "cli";
 
 /// Of these rooms `mod.rs` still has definitions of its own.
-const WITH_DEFINITIONS: [&str; 4] = ["cli", "scene", "spacetime", "study"];
+const WITH_DEFINITIONS: [&str; 2] = ["scene", "spacetime"];
 
 fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")

@@ -1,0 +1,47 @@
+//! Why there is nothing to study.
+
+use thiserror::Error;
+
+use crate::jobs::{Cancelled, ExportError};
+use crate::pipeline::PlacedSceneError;
+use crate::scene::Tolerance;
+
+/// Why a study has no result.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// No tolerance, and no number of rays.
+    #[error("nothing to study, expected at least one tolerance or number of rays a pixel")]
+    Nothing,
+    /// One number of rays twice.
+    #[error("{0} rays along each side of a pixel are there twice, expected each number once")]
+    RepeatedSamples(u32),
+    /// One tolerance twice.
+    #[error("the tolerance {0} is there twice, expected each once")]
+    Repeated(Tolerance),
+    /// Tolerances that cannot be put in order.
+    #[error("the tolerances {0} and {1} differ in their units, expected one unit for all")]
+    MixedUnits(Tolerance, Tolerance),
+    /// Not one model for each object, or one that is nowhere.
+    #[error(transparent)]
+    PlacedScene(#[from] PlacedSceneError),
+    /// Not one camera for each step.
+    #[error("there are {cameras} cameras for {steps} steps, expected one for each")]
+    Cameras {
+        /// How many steps the scene has.
+        steps: usize,
+        /// How many cameras there are.
+        cameras: usize,
+    },
+    /// Photosurfaces that no file can hold, or a file that cannot be written.
+    #[error("at the tolerance {tolerance}")]
+    Export {
+        /// Which.
+        tolerance: Tolerance,
+        /// Why.
+        source: ExportError,
+    },
+    /// The caller ended the study.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
