@@ -229,5 +229,5 @@ fn scene_from_stdin(bytes: &[u8]) -> anyhow::Result<Scene> {
         !is_gltf,
         "{EXPECTED}, this is a .gltf, which refers to other files: give its name in place of -"
     );
-    Ok(scene_from_bytes(bytes).context("stdin")?)
+    scene_from_bytes(bytes).context("stdin")
 }

@@ -8,7 +8,6 @@
 //! give the same models, bit by bit.
 
 use std::cell::Cell;
-use std::collections::HashMap;
 use std::path::Path;
 
 use glam::{DVec2, DVec3};
@@ -39,7 +38,7 @@ pub(super) fn read_plain(file: &[u8]) -> Option<Statements> {
             })
             .collect();
         let numbers = materials.iter().enumerate();
-        let numbers: HashMap<String, usize> = numbers.map(|(i, m)| (m.name.clone(), i)).collect();
+        let numbers = numbers.map(|(i, m)| (m.name.clone(), i)).collect();
         Ok((materials, numbers))
     };
     let (models, _) = tobj::load_obj_buf(&mut &*file, &options, library).ok()?;
