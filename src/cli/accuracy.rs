@@ -18,16 +18,15 @@ const NAMED: usize = 4;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Accuracy (overrides the scene)")]
 pub(super) struct AccuracyArgs {
-    /// How far a photosurface may be from the true one: 1e-3 (a fraction of its diagonal), abs:0.01 (a length in
+    /// Largest distance between a mesh and its true photosurface: 1e-3 (a fraction of its diagonal), abs:0.01 (a length in
     /// scene units) or deg:0.02 (an angle seen by the observer, in degrees) [default: 1e-3]
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<Tolerance>,
-    /// Leave every vertex what it is; the certificate still tells how far off the mesh is
+    /// Add no vertices; the certificate still bounds the distance from the true photosurface
     #[arg(long)]
     no_subdivide: bool,
-    /// Most triangles of all photosurfaces together; if the tolerance needs more, the largest gaps are closed
-    /// first and the result is not certified. Triangles that a source has always stay, even if they are more
-    /// [default: 20000000]
+    /// Maximum number of triangles of all photosurfaces together. If the tolerance needs more, the largest gaps are closed
+    /// first and the result is not certified. Triangles of the source are always kept [default: 20000000]
     #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
     max_triangles: Option<u64>,
 }
@@ -36,8 +35,8 @@ pub(super) struct AccuracyArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Accuracy (overrides the scene)")]
 pub(super) struct DetailArgs {
-    /// Levels of detail: each of these tolerances in turn. Of each export writes a file (and a report), out_lod0.glb,
-    /// out_lod1.glb, ..., and check prints a table
+    /// Levels of detail: for each of these tolerances export writes a file (and a report), out_lod0.glb, out_lod1.glb, ...,
+    /// and check prints a table
     #[arg(long, value_name = "T,T,...", value_delimiter = ',', value_parser = tolerance, allow_hyphen_values = true,
         conflicts_with = "tolerance")]
     lod: Vec<Tolerance>,
@@ -139,9 +138,9 @@ impl AccuracyArgs {
             _ if loosening.contains(&f64::INFINITY)
                 || predicted(predictions) > self.max_triangles() as f64 =>
             {
-                "no tolerance near it would fit".to_owned()
+                "no looser tolerance near it fits".to_owned()
             }
-            [(_, fitting)] if loosening.len() == 1 => format!("--tolerance {fitting} would fit"),
+            [(_, fitting)] if loosening.len() == 1 => format!("--tolerance {fitting} fits"),
             several => {
                 let named = several.iter().take(NAMED);
                 let named: Vec<_> = named
@@ -151,11 +150,11 @@ impl AccuracyArgs {
                     0 => String::new(),
                     rest => format!(" and looser ones for {rest} more"),
                 };
-                format!("the tolerance {}{rest} would fit", named.join(", "))
+                format!("the tolerance {}{rest} fits", named.join(", "))
             }
         };
         verbosity.note(format_args!(
-            "the tolerance needs about {needed}, more than --max-triangles {} leaves room for; {advice}",
+            "the tolerance needs about {needed}, more than --max-triangles {}; {advice}",
             grouped(self.max_triangles() as usize),
         ));
     }
@@ -164,7 +163,7 @@ impl AccuracyArgs {
     pub(super) fn tell_beyond_budget(&self, triangles: f64, verbosity: Verbosity) {
         if triangles.round() > self.max_triangles() as f64 {
             verbosity.note(format_args!(
-                "{} triangles are more than --max-triangles {}: those that there are before any subdivision stay",
+                "{} triangles are more than --max-triangles {}: triangles of the source are always kept",
                 grouped_number(triangles),
                 grouped(self.max_triangles() as usize)
             ));
@@ -209,9 +208,8 @@ fn all_certified(made: &Tally, verbosity: Verbosity) -> bool {
     };
     let certificate = &worst.certificate;
     verbosity.note(format_args!(
-        "{} of {} photosurfaces are not within the tolerance; the worst, against what \
-         was asked for, is \"{}\", proven within {:.3e} where that was {:.3e} ({}: gap {:.3e}, curvature {:.3e}, \
-         rounding {:.3e}){}",
+        "{} of {} photosurfaces are not within their tolerance; the worst is \"{}\", with a proven bound of {:.3e} for a \
+         tolerance of {:.3e} ({}: gap {:.3e}, curvature {:.3e}, rounding {:.3e}){}",
         made.uncertified,
         made.photosurfaces,
         worst.name,
@@ -222,7 +220,7 @@ fn all_certified(made: &Tally, verbosity: Verbosity) -> bool {
         certificate.curvature,
         certificate.rounding,
         match certificate.tolerance {
-            0.0 => "; it has no extent that a tolerance could be a fraction of: give a length, such as --tolerance abs:0.01",
+            0.0 => "; it has no extent, so a relative tolerance of it is zero: give a length, such as --tolerance abs:0.01",
             _ => "",
         }
     ));

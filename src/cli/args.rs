@@ -12,19 +12,18 @@ use photosurface::{
 /// What to look at.
 #[derive(Debug, Args)]
 pub(super) struct InputArgs {
-    /// A scene file (.json), or a mesh (.glb, .gltf, .obj), or - for either from stdin (JSON or GLB);
-    /// without it the built-in scene "sphere" is taken
+    /// A scene file (.json), a mesh (.glb, .gltf, .obj), or - to read a scene (JSON) or a GLB from stdin
+    /// [default: the built-in scene "sphere"]
     #[arg(value_name = "SCENE|MESH")]
     pub(super) input: Option<PathBuf>,
-    /// Take a built-in scene; `photosurface example` lists them
+    /// Use a built-in scene; `photosurface example` lists them
     #[arg(long, value_name = "NAME", conflicts_with = "input")]
     pub(super) example: Option<String>,
-    /// Read what SCENE or MESH names in DIR and below, too; may be given several times. Without it, files that another
-    /// one names are read in the folder of SCENE or MESH, in this directory, and below these, links followed
+    /// Also read files in DIR and below that SCENE or MESH refers to; may be given several times. By default such files must
+    /// be in the folder of SCENE or MESH, in the working directory, or below, after links are resolved
     #[arg(long, value_name = "DIR", value_parser = folder, help_heading = "Reading")]
     allow_read: Vec<PathBuf>,
-    /// Pixels that all textures may have together when they are decoded, at four bytes each; what is beyond is left out
-    /// with a note
+    /// Maximum number of pixels of all decoded textures together, four bytes each; further textures are left out, with a note
     #[arg(long, value_name = "N", default_value_t = Access::default().max_texture_pixels, value_parser = whole_number, help_heading = "Reading")]
     max_texture_pixels: u64,
 }
@@ -46,7 +45,7 @@ pub(super) struct ObserverArgs {
     /// Speed of the observer in units of the speed of light, 0 <= B < 1
     #[arg(long, value_name = "B", group = "speed", value_parser = number, allow_hyphen_values = true)]
     beta: Option<f64>,
-    /// 1 - beta, for speeds that beta cannot say, 0 < D <= 1
+    /// 1 - beta, for speeds too close to 1 for --beta, 0 < D <= 1
     #[arg(long, value_name = "D", group = "speed", value_parser = number, allow_hyphen_values = true)]
     one_minus_beta: Option<f64>,
     /// Lorentz factor of the observer, G >= 1
@@ -55,19 +54,18 @@ pub(super) struct ObserverArgs {
     /// Rapidity of the observer, atanh(beta), from 0 to 350
     #[arg(long, value_name = "R", group = "speed", value_parser = number, allow_hyphen_values = true)]
     rapidity: Option<f64>,
-    /// Direction of the observer's motion, of any length; without a speed it turns the scene's velocity, and
-    /// a mesh is seen at rest from that side [default for a mesh: 0,0,-1]
+    /// Direction of the observer's motion, a vector of any length. Without a speed it only changes the direction of the
+    /// scene's velocity; a mesh without a scene is seen from that side, at rest [default for a mesh: 0,0,-1]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     direction: Option<DVec3>,
-    /// Place of the observation in the scene frame, in scene units [default for a mesh: two diagonals of
-    /// its bounds before its centre, so that the observer moves towards it]
+    /// Place of the observation in the scene frame, in scene units [default for a mesh: two
+    /// bounding-box diagonals in front of its centre, so that the observer moves towards it]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     observer: Option<DVec3>,
     /// Scene time of the observation, in scene units [default for a mesh: 0]
     #[arg(long, value_name = "T", value_parser = number, allow_hyphen_values = true)]
     time: Option<f64>,
-    /// Proper times of the observer after the observation at which to look: A,B,C or FROM..TO/COUNT
-    /// [default for a mesh: 0]
+    /// Proper times of the observer, counted from the observation: A,B,C or FROM..TO/COUNT [default for a mesh: 0]
     #[arg(long, value_name = "A,B,C|FROM..TO/COUNT", value_parser = steps, allow_hyphen_values = true)]
     steps: Option<Steps>,
     /// Radius of a small sphere that marks the observer, in scene units; 0 for none [default for a mesh: 0]
@@ -146,7 +144,7 @@ fn folder(text: &str) -> anyhow::Result<PathBuf> {
 pub(super) fn vector(text: &str) -> anyhow::Result<DVec3> {
     let numbers = numbers(text)?;
     let &[x, y, z] = numbers.as_slice() else {
-        anyhow::bail!("{} numbers, expected three: X,Y,Z", numbers.len());
+        anyhow::bail!("has {} numbers, expected 3: X,Y,Z", numbers.len());
     };
     Ok(DVec3::new(x, y, z))
 }
@@ -192,7 +190,7 @@ pub(super) fn whole_number(text: &str) -> anyhow::Result<u64> {
 pub(super) fn count(text: &str) -> anyhow::Result<NonZeroUsize> {
     let number = usize::try_from(whole_number(text)?).ok();
     let number = number.and_then(NonZeroUsize::new);
-    number.with_context(|| format!("{text} is not enough, expected at least 1"))
+    number.with_context(|| format!("{text} is too small, expected at least 1"))
 }
 
 /// A flag, and whether it is there.

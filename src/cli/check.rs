@@ -11,14 +11,14 @@ use super::messages::{Verbosity, counted, print_if_open, shown};
 use super::output::{FileFormat, or_ply};
 use super::status::Status;
 
-/// Validate a scene or a mesh, and say what an export would make
+/// Validate a scene or a mesh, and predict the export
 ///
-/// Reads everything that an export would read and prints, for every object, its parts, how fast it moves relative to
-/// the observer, at its fastest, how many triangles there are before refinement and about how many its photosurfaces take, both of all
-/// steps together, and whether they will be certified to be within the tolerance.
-/// Makes and writes nothing. It predicts exports without --animate=morph, which has the triangles of all steps in one mesh
-/// and rounds them together. Exit status: 0 where that of the export will be 0, 1 where it will be 1 (not certified), or
-/// where the steps do not fit into one file but may into several (--split), 2 an error, 130 interrupted.
+/// Reads everything that an export would read, and writes nothing. For each object it prints: the number of parts; the
+/// highest speed relative to the observer; the triangles before refinement and, predicted, after it, summed over all steps;
+/// and whether every photosurface will be certified. An export with --animate=morph is not predicted: it has the triangles
+/// of all steps in one mesh.
+/// Exit status: 0 if the export will end with 0; 1 if it will end with 1 (not certified), or if the steps do not fit into one
+/// file but may fit into several (--split); 2 an error; 130 interrupted.
 #[derive(Debug, clap::Args)]
 pub(super) struct CheckArgs {
     #[command(flatten)]
@@ -29,11 +29,11 @@ pub(super) struct CheckArgs {
     accuracy: AccuracyArgs,
     #[command(flatten)]
     detail: DetailArgs,
-    /// What the export would write: a .ply has double precision, so that it can hold what is far away or very small,
-    /// and the Doppler factor
+    /// Format of the export: a .ply has double precision, so that it can hold distant or very small objects, and the
+    /// Doppler factor
     #[arg(long, value_enum, default_value_t = FileFormat::Glb, help_heading = "Output")]
     format: FileFormat,
-    /// Print the table alone, without notes on what is read
+    /// Print only the table, without notes on the input
     #[arg(short, long, conflicts_with = "verbose", help_heading = "Messages")]
     quiet: bool,
     /// Say more: every part of every object

@@ -22,8 +22,8 @@ const MAX_THREADS: NonZeroUsize = NonZeroUsize::MIN.saturating_add(1023);
 ///
 /// Units: the speed of light is 1; lengths and times share one unit. Coordinates are right-handed, y up.
 /// Results go to files, or to stdout with -o -; everything else goes to stderr.
-/// Exit status: 0 done and certified, 1 written but not certified (budget reached, subdivision off), for check that
-/// it would be, 2 an error, nothing written, 130 interrupted. Of several files, those that are finished stay.
+/// Exit status: 0 done and certified, 1 written but not certified (budget reached, subdivision off; check: the export would
+/// not be certified), 2 an error (nothing written), 130 interrupted, 141 stdout closed. Finished files stay after an error.
 #[derive(Debug, Parser)]
 #[command(name = "photosurface", version, max_term_width = 100)]
 struct Cli {

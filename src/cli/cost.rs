@@ -19,12 +19,12 @@ use super::output::{Bar, check_destinations, is_stdout};
 
 /// Show what accuracy costs: triangles, bytes, time and memory of meshes over tolerances, rays and time of pictures
 ///
-/// Meshes: exports all photosurfaces at each tolerance to a temporary file, and tells the triangles that were made, the
-/// least that theory allows and those that uniform subdivision would take; how large the file is, how long it took, how
-/// much memory was used; the error that is proven and the one that is measured at random places.
+/// Meshes: for each tolerance, exports all photosurfaces to a temporary file, and lists the triangles made, the least
+/// number by theory and the number that uniform subdivision needs; file size, time and memory; the proven bound and the
+/// error measured at random places.
 ///
-/// Pictures: follows rays of light to what the observer sees at every step, so many a pixel, and tells how long it took
-/// and how far the picture is from one that is made of many more rays at random places.
+/// Pictures: for each number of rays per pixel, draws the observer's view at every step by rays of light, and lists the time
+/// and the difference from a reference picture with many more, random rays.
 ///
 /// A table of each goes to stdout.
 #[derive(Debug, clap::Args)]
@@ -41,7 +41,7 @@ pub(super) struct CostArgs {
     pictures: PictureArgs,
     #[command(flatten)]
     output: OutputArgs,
-    /// Print the tables alone, without notes
+    /// Print only the tables, without notes
     #[arg(short, long, help_heading = "Messages")]
     quiet: bool,
 }
@@ -49,10 +49,10 @@ pub(super) struct CostArgs {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Study")]
 struct StudyArgs {
-    /// Study one of them alone [default: both]
+    /// Study only meshes or only pictures [default: both]
     #[arg(long, value_enum)]
     only: Option<Half>,
-    /// How often each tolerance and each picture is carried out, at least 1; times are medians
+    /// Runs of each tolerance and each picture, at least 1; times are medians
     #[arg(
         long,
         value_name = "N",
@@ -67,7 +67,7 @@ struct StudyArgs {
 enum Half {
     /// Photosurfaces as meshes, over tolerances
     Meshes,
-    /// Pictures by rays of light, over the number of rays a pixel
+    /// Pictures by rays of light, over the number of rays per pixel
     Rays,
 }
 
@@ -78,8 +78,7 @@ struct MeshArgs {
     /// angles in degrees (deg:0.02), all of one kind [default: 1e-1,1e-2,1e-3,1e-4,1e-5,1e-6]
     #[arg(long, value_name = "T,T,...", value_delimiter = ',', value_parser = tolerance, allow_hyphen_values = true)]
     tolerances: Vec<Tolerance>,
-    /// Tolerances that would take more triangles, all photosurfaces together, are predicted and not carried out
-    /// [default: 3000000]
+    /// Tolerances that need more triangles than this, summed over all photosurfaces, are only predicted [default: 3000000]
     #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
     max_triangles: Option<u64>,
     /// Number of random places at which the error of each tolerance is measured, at least 1; the same ones on every run
@@ -91,18 +90,18 @@ struct MeshArgs {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Pictures (directions are in the observer's frame)")]
 struct PictureArgs {
-    /// Rays a pixel along each side to compare: N for N x N of them, as render --samples has it, from 1 to 16; the
-    /// reference takes 8 times as many as the largest of them [default: 1,2,4,8]
+    /// Numbers of rays to compare: N stands for N x N rays per pixel, as in render --samples, from 1 to 16; the reference
+    /// has 8 times as many as the largest of them [default: 1,2,4,8]
     #[arg(long, value_name = "N,N,...", value_delimiter = ',', value_parser = samples, allow_hyphen_values = true)]
     pixel_samples: Vec<NonZeroU32>,
     /// Width and height of the pictures in pixels [default: 320x180]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<PictureSize>,
-    /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180 [default: 60; of a mesh without
-    /// --look so that everything is in the picture]
+    /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180 [default: 60; for a mesh without
+    /// --look wide enough for all of it]
     #[arg(long, value_name = "DEG", value_parser = number, allow_hyphen_values = true)]
     fov: Option<f64>,
-    /// Direction in which the observer looks, of any length [default: at each step to the middle of what is there]
+    /// Direction in which the observer looks, of any length [default: at each step towards the middle of the objects]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     look: Option<DVec3>,
 }
@@ -113,8 +112,8 @@ struct OutputArgs {
     /// Write the study as JSON; - for stdout, in place of the table
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Write the table with all digits as CSV, one tolerance or number of rays a line; where both are studied, FILE has
-    /// the meshes and FILE_rays, with the same extension, the pictures; - for stdout, in place of the table, with --only
+    /// Write the table with all digits as CSV, one line for each tolerance or number of rays; if both are studied, meshes go
+    /// to FILE and pictures to FILE_rays, with the same extension; - for stdout, in place of the table, with --only
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
     /// Draw triangles and time over the tolerance, rays and time over the error of pictures, all logarithmic, with the
@@ -331,7 +330,7 @@ fn tell_of_rest(input: &Input, verbosity: Verbosity) -> anyhow::Result<()> {
     if input.scene.objects().iter().all(is_at_rest) {
         verbosity.note(
             "nothing moves relative to the observer: each photosurface is the shape itself; give a speed, such as \
-             --beta 0.9, to see what one costs",
+             --beta 0.9, to study its cost",
         );
     }
     Ok(())
@@ -358,10 +357,12 @@ fn tell(study: &CostStudy, max_triangles: u64, verbosity: Verbosity) {
         ));
     }
     if made.iter().any(|made| made.peak_memory_bytes.is_none()) {
-        verbosity.note("this system does not tell how much memory is used at most");
+        verbosity.note("this system does not report peak memory");
     }
     if made.iter().any(|made| !made.certified) {
-        verbosity.note("where the bound is above the tolerance, no number of triangles keeps that");
+        verbosity.note(
+            "where the bound is above the tolerance, no number of triangles can keep the tolerance",
+        );
     }
 }
 

@@ -26,7 +26,7 @@ const MESH_HEADINGS: [&str; 13] = [
 ];
 
 const RAY_HEADINGS: [&str; 7] = [
-    "rays a pixel",
+    "rays per pixel",
     "rays",
     "error",
     "+-",
@@ -64,7 +64,7 @@ pub(super) fn tables_of(study: &CostStudy, out: &mut dyn Write) -> anyhow::Resul
     writeln!(
         out,
         "{} of {} x {} pixels; error (measured, root mean square, with its standard deviation) and largest error of a \
-         pixel are of linear light, white being 1, against {} random rays a pixel, themselves off by {:.1e}; {times}",
+         pixel are of linear light, white being 1, against {} random rays per pixel, themselves off by {:.1e}; {times}",
         counted(pictures.count, "picture"),
         pictures.width,
         pictures.height,

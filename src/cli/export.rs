@@ -22,7 +22,7 @@ use super::status::Status;
 /// Write photosurfaces as meshes
 ///
 /// Every object, at every step, becomes a mesh of its own in the observer's frame, observer at the origin.
-/// Without SCENE or MESH the built-in scene "sphere" is taken:
+/// Without SCENE or MESH the built-in scene "sphere" is used:
 ///
 ///     photosurface export
 ///     photosurface export scene.json -o out.glb
@@ -39,7 +39,7 @@ pub(super) struct ExportArgs {
     #[command(flatten)]
     detail: DetailArgs,
     /// Write these numbers for every vertex: doppler, emission_time (from the moment of observation, so negative),
-    /// rest_position (overrides the scene); not with --animate=morph, whose one mesh has one of each
+    /// rest_position (overrides the scene); not with --animate=morph, which has only one value per vertex
     #[arg(
         long,
         value_name = "A,A,...",
@@ -57,19 +57,19 @@ pub(super) struct ExportArgs {
 #[command(next_help_heading = "Output")]
 struct OutputArgs {
     /// Where to write: .glb, .gltf (with its data beside it in NAME-DIGEST.bin) or .ply (double precision, all in one mesh, the
-    /// Doppler factor as quality); - for stdout, to which a GLB goes unless --format says otherwise [default:
-    /// NAME_photosurface.glb in this directory]
+    /// Doppler factor as quality); - for stdout (GLB, unless --format is given) [default: NAME_photosurface.glb in this
+    /// directory]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// What to write where no name of a file says it: to stdout glb or ply [default: glb]
+    /// Format, if no file name determines it; to stdout: glb or ply [default: glb]
     #[arg(long, value_enum)]
     format: Option<FileFormat>,
     /// Write a file for each step: out_step000.glb, out_step001.glb, ...
     #[arg(long)]
     split: bool,
-    /// Show the steps one after another: "frames", a mesh for each step, there during its frame alone; "morph", one
-    /// mesh for all steps, within the tolerance at each, that moves from one to the next (glTF; without --attributes,
-    /// which differ from step to step)
+    /// Show the steps one after another (glTF): "frames", a mesh for each step, shown only during its frame; "morph", one
+    /// mesh with the steps as morph targets, within the tolerance at each step (without --attributes, which differ
+    /// from step to step)
     #[arg(
         long,
         value_name = "HOW",
@@ -79,7 +79,7 @@ struct OutputArgs {
         conflicts_with = "split"
     )]
     animate: Option<Animate>,
-    /// Steps in a second of an animation
+    /// Steps per second of an animation
     #[arg(
         long,
         value_name = "N",
@@ -309,7 +309,7 @@ fn tell_replaced_names(placed: &PlacedScene, path: &Path, verbosity: Verbosity) 
         others => format!(", and {} more", counted(others, "name")),
     };
     verbosity.note(format_args!(
-        "{}: some programs break white space, control characters and . : / [ ] in names, which become _: \"{}\" is \"{name}\"{others}",
+        "{}: names changed, because some programs cannot handle white space, control characters and . : / [ ]: \"{}\" became \"{name}\"{others}",
         path.display(),
         shown_name(&wanted),
     ));

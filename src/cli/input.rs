@@ -216,18 +216,18 @@ fn from_stdin() -> anyhow::Result<Vec<u8>> {
 
 /// Stdin has no name that says what it holds.
 fn scene_from_stdin(bytes: &[u8]) -> anyhow::Result<Scene> {
-    const EXPECTED: &str = "stdin takes a scene (JSON) or a GLB";
+    const EXPECTED: &str = "stdin must be a scene (JSON) or a GLB";
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let text = text.trim_ascii_start();
     ensure!(
         text.starts_with(b"{") || text.starts_with(b"["),
-        "{EXPECTED}, this is neither; an .obj or a .gltf is read from a file: give its name in place of -"
+        "{EXPECTED}, this is neither; to read an .obj or a .gltf, give its file name instead of -"
     );
     let json = serde_json::from_slice::<serde_json::Value>(text);
     let is_gltf = json.is_ok_and(|json| json.get("asset").is_some());
     ensure!(
         !is_gltf,
-        "{EXPECTED}, this is a .gltf, which refers to other files: give its name in place of -"
+        "{EXPECTED}, this is a .gltf, which refers to other files: give its file name instead of -"
     );
     scene_from_bytes(bytes).context("stdin")
 }

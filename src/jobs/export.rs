@@ -81,9 +81,7 @@ pub enum ExportError {
     #[error("an animation is one file, expected it without a file for each step")]
     SplitPlayback,
     /// Two levels of detail of one tolerance.
-    #[error(
-        "the tolerance {0} is there twice among the levels of detail, expected each of them once"
-    )]
+    #[error("the tolerance {0} is given twice among the levels of detail, expected each one once")]
     RepeatedLevel(Tolerance),
     /// A file that must not be written.
     #[error(transparent)]

@@ -35,7 +35,7 @@ pub fn file_for_each_step(path: &Path, steps: usize) -> Vec<PathBuf> {
 pub enum OutputError {
     /// The file stands where the job reads.
     #[error(
-        "the output {} would be written over the input {}; choose another name for the output",
+        "the output {} would overwrite the input {}; choose another name for the output",
         output.display(),
         input.display()
     )]
@@ -47,7 +47,7 @@ pub enum OutputError {
     },
     /// Two outputs are one file.
     #[error(
-        "the output {} would be written over another output, {}; choose another name for one of them",
+        "the output {} would overwrite another output, {}; choose another name for one of them",
         output.display(),
         other.display()
     )]

@@ -30,7 +30,7 @@ pub enum ReadError {
     },
     /// A file that another names and that is not where such files are read.
     #[error(
-        "{path:?} is not in the folder of the file that names it, nor in the working directory, nor below; \
+        "{path:?} is outside the folder of the file that refers to it, and outside the working directory; \
          --allow-read {folder:?} allows it"
     )]
     OutOfReach {
@@ -76,7 +76,7 @@ pub enum ReadError {
     #[error("not glTF, neither binary nor JSON")]
     Json(#[source] serde_json::Error),
     /// JSON that is no glTF.
-    #[error("{place}: not as glTF has it")]
+    #[error("{place}: not valid glTF")]
     Schema {
         /// Where.
         place: String,
@@ -201,7 +201,7 @@ impl ReadError {
 #[non_exhaustive]
 pub enum DocumentProblem {
     /// A reference to something that is not there.
-    #[error("refers to something that is not there, expected an index in range")]
+    #[error("index out of range")]
     OutOfRange,
     /// A value that glTF does not define.
     #[error("not a value that glTF 2.0 defines")]
@@ -283,9 +283,7 @@ pub enum AccessorProblem {
         count: usize,
     },
     /// Data that is read again and again, or zeros without end: a few bytes of JSON could ask for all memory.
-    #[error(
-        "with it {found} numbers would be read, expected at most {limit} of a file of this size"
-    )]
+    #[error("needs {found} numbers, expected at most {limit} of a file of this size")]
     TooMuch {
         /// How many there would be.
         found: u64,
@@ -449,7 +447,7 @@ pub enum ObjProblem {
         found: String,
     },
     /// A corner at a vertex that is not there.
-    #[error("corner {found:?} asks for v {index}, but there are {count} so far")]
+    #[error("corner {found:?} refers to v {index}, but only {count} are defined so far")]
     Index {
         /// What stands there.
         found: String,

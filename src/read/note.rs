@@ -1,4 +1,4 @@
-//! What was found in a file and is not carried over as it stands.
+//! What was found in a file and is not copied as it stands.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -254,11 +254,10 @@ impl fmt::Display for Note {
             } => write!(f, "{scenes} scenes: only scenes[{read}] is read"),
             Self::Photosurface { generator } => write!(
                 f,
-                "written by {generator}: what is in it has been seen from a moving place already and is taken as it \
-                 is, at rest"
+                "written by {generator}: this mesh already is a photosurface; it is read as an ordinary mesh at rest"
             ),
-            Self::NotCarried { what } => write!(f, "{what}: not carried over"),
-            Self::Extension { name } => write!(f, "extension {name}: not carried over"),
+            Self::NotCarried { what } => write!(f, "{what}: not copied"),
+            Self::Extension { name } => write!(f, "extension {name}: not copied"),
             Self::Hidden { node } => write!(f, "node {node:?} is not visible: skipped"),
             Self::InnerRoots { scene, node, count } => {
                 let those = plural(*count, "node");
@@ -279,7 +278,7 @@ impl fmt::Display for Note {
                 };
                 write!(
                     f,
-                    "{place}: {those} taken as affine, whose bottom row is [0, 0, 0, 1] but for {largest:.0e}"
+                    "{place}: the bottom row of {those} differs from [0, 0, 0, 1] by up to {largest:.0e} and is ignored"
                 )
             }
             Self::Flat { node } => {
@@ -298,7 +297,7 @@ impl fmt::Display for Note {
                 let times = plural(*count, "time");
                 write!(
                     f,
-                    "{place}, indices: {index}, which glTF reserves, taken {times} for the vertex of that number"
+                    "{place}, indices: {index}, reserved by glTF, used {times} as the index of a vertex"
                 )
             }
             Self::Empty { place } => write!(f, "{place}: has no triangles, skipped"),
@@ -314,7 +313,7 @@ impl fmt::Display for Note {
                 )
             }
             Self::Attributes { mesh, names } => {
-                write!(f, "{mesh}: {} not carried over", names.join(", "))
+                write!(f, "{mesh}: {} not copied", names.join(", "))
             }
             Self::ColorsClamped { mesh, count } => {
                 let those = plural(*count, "colour");
@@ -333,7 +332,7 @@ impl fmt::Display for Note {
                 let those = plural(*count, "vertex");
                 write!(
                     f,
-                    "{mesh}: {those} without weights taken to follow the first joint that each names"
+                    "{mesh}: {those} without weights follow their first joint"
                 )
             }
             Self::Weights { mesh, count } => {
@@ -362,12 +361,12 @@ impl fmt::Display for Note {
                 properties,
             } => {
                 let properties = properties.join(", ");
-                write!(f, "material {material:?}: {properties} not carried over")
+                write!(f, "material {material:?}: {properties} not copied")
             }
             Self::FactorClamped { place, factor } => {
                 write!(
                     f,
-                    "{place}: {factor} brought to the nearest that glTF allows"
+                    "{place}: {factor} changed to the nearest value that glTF allows"
                 )
             }
             Self::Unplaced {
@@ -391,7 +390,7 @@ impl fmt::Display for Note {
             Self::ImageScaled { image } => {
                 write!(
                     f,
-                    "image {image} made of pictures of different sizes: scaled to the larger one"
+                    "image {image} combines images of different sizes: scaled to the larger size"
                 )
             }
             Self::MaterialLibrary { path, reason } => {
@@ -406,7 +405,7 @@ impl fmt::Display for Note {
                     1 => ("once".to_owned(), "in"),
                     _ => (format!("{count} times"), "first in"),
                 };
-                write!(f, "{what}: passed over {times}")?;
+                write!(f, "{what}: ignored {times}")?;
                 let line = first_line.map(|line| format!(", {word} line {line}"));
                 f.write_str(&line.unwrap_or_default())
             }
@@ -420,7 +419,7 @@ impl fmt::Display for Note {
             Self::UnknownMaterial { name } => {
                 write!(
                     f,
-                    "material {name:?} is not defined: parts have no more than its name"
+                    "material {name:?} is not defined: parts keep only its name"
                 )
             }
             Self::MaterialLines { path, lines } => {

@@ -11,16 +11,16 @@ use crate::scene::Tolerance;
 #[non_exhaustive]
 pub enum StudyError {
     /// No tolerance, and no number of rays.
-    #[error("nothing to study, expected at least one tolerance or number of rays a pixel")]
+    #[error("nothing to study, expected at least one tolerance or number of rays per pixel")]
     Nothing,
     /// One number of rays twice.
-    #[error("{0} rays along each side of a pixel are there twice, expected each number once")]
+    #[error("{0} x {0} rays per pixel are given twice, expected each number once")]
     RepeatedSamples(u32),
     /// One tolerance twice.
-    #[error("the tolerance {0} is there twice, expected each once")]
+    #[error("the tolerance {0} is given twice, expected each one once")]
     Repeated(Tolerance),
     /// Tolerances that cannot be put in order.
-    #[error("the tolerances {0} and {1} differ in their units, expected one unit for all")]
+    #[error("the tolerances {0} and {1} have different units, expected one unit for all")]
     MixedUnits(Tolerance, Tolerance),
     /// Not one model for each object, or one that is nowhere.
     #[error(transparent)]

@@ -1,6 +1,6 @@
 //! What accuracy costs: for one tolerance after the other the triangles, bytes, time and memory that it takes, what is
 //! proven and what is measured then, and what theory and uniform subdivision say; for pictures by rays of light, for one
-//! number of rays a pixel after the other, the time that it takes and the error that is measured.
+//! number of rays per pixel after the other, the time that it takes and the error that is measured.
 
 mod cost_study;
 mod error;

@@ -1,4 +1,4 @@
-//! Pictures by rays of light: rays, time and error for one number of rays a pixel after the other.
+//! Pictures by rays of light: rays, time and error for one number of rays per pixel after the other.
 
 use std::num::NonZeroU32;
 use std::time::Instant;
@@ -22,14 +22,14 @@ const REFERENCE_FINER: u32 = 2;
 pub struct RaySettings {
     /// What the observer looks through at each step of the scene.
     pub cameras: Vec<Camera>,
-    /// Rays a pixel along each side, as [`PictureOptions::samples`], none twice, in any order.
+    /// Rays per pixel along each side, as [`PictureOptions::samples`], none twice, in any order.
     pub samples: Vec<NonZeroU32>,
     /// The textures of the pictures; they say afterwards which of them pictures go without.
     pub textures: Textures,
 }
 
 impl RaySettings {
-    /// From one ray to 64 a pixel.
+    /// From one ray to 64 per pixel.
     pub fn new(cameras: Vec<Camera>) -> Self {
         let samples = [1, 2, 4, 8].into_iter().filter_map(NonZeroU32::new);
         Self {
@@ -67,7 +67,7 @@ pub struct Pictures {
     pub reference_error: f64,
 }
 
-/// What one number of rays a pixel costs, the pictures of all steps together.
+/// What one number of rays per pixel costs, the pictures of all steps together.
 ///
 /// Errors are of linear light, before it is rounded to bytes: 1 is what a channel of white has.
 ///
@@ -77,7 +77,7 @@ pub struct Pictures {
 /// more. Each of the `n` columns of squares that an edge crosses is wrong by up to half a square, `1/(2 n^2)` of the
 /// pixel. From column to column that changes with the slope of the edge; it adds up only for slopes within `1/n` of a
 /// simple ratio, and in the mean over all slopes the squares add as if they were random: `n (1/n^2)^2 / 12`. With `N = n^2`
-/// rays a pixel
+/// rays per pixel
 ///
 /// ```text
 /// error ~ N^(-3/4)        rays ~ error^(-4/3)
@@ -102,7 +102,7 @@ pub struct Pictures {
 /// D. P. Mitchell, *Consequences of stratified sampling in graphics*, SIGGRAPH 1996.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RayCost {
-    /// Rays a pixel along each side, as they are asked for.
+    /// Rays per pixel along each side, as they are asked for.
     pub samples: u32,
     /// The square of it.
     pub samples_per_pixel: u64,

@@ -86,6 +86,6 @@ mod tests {
         assert_eq!(sorted, [1e-1, 1e-2, 1e-3].map(relative));
         let error = |tolerances: &[Tolerance]| in_order(tolerances).unwrap_err().to_string();
         assert!(error(&[absolute(1.0), relative(0.5)]).contains("abs:1.000e0 and 5.000e-1"));
-        assert!(error(&[absolute(1.0), absolute(1.0)]).contains("abs:1.000e0 is there twice"));
+        assert!(error(&[absolute(1.0), absolute(1.0)]).contains("abs:1.000e0 is given twice"));
     }
 }

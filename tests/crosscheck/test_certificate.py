@@ -333,7 +333,7 @@ def test_a_budget_is_kept_and_the_tolerance_named_fits(shape, tolerance, export)
     assert certificate["triangles_out"] <= budget
     assert_valid(path)
     messages = (path.parent / "messages.txt").read_text()
-    (named,) = re.findall(r"--tolerance (\S+) would fit", messages)
+    (named,) = re.findall(r"--tolerance (\S+) fits", messages)
     assert named.partition(":")[1:2] == tolerance.partition(":")[1:2]
     fitting = export(scene, "--tolerance", named, "--max-triangles", str(budget))
     (fits,) = certificates(fitting)

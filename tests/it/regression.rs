@@ -51,7 +51,7 @@ fn what_a_source_refers_to_is_not_written_over() {
     ] {
         workplace
             .run(&format!("export {input} {output}"))
-            .error(&["the output ", " would be written over the input "]);
+            .error(&["the output ", " would overwrite the input "]);
     }
     assert_eq!(workplace.files(), files);
     for (file, before) in files.iter().zip(before) {
@@ -439,7 +439,7 @@ fn what_is_farther_away_than_digits_reach_is_left_as_it_is() {
         let run = workplace.run(&line);
         // Not certified: the digits of the place are not enough.
         assert_eq!(run.status, 1, "{run}");
-        assert!(!run.stderr.contains("would fit"), "{run}");
+        assert!(!run.stderr.contains(" fits"), "{run}");
         let certificate = &workplace.read_json("report.json")["objects"][0]["certificate"];
         assert_eq!(certificate["triangles_in"], certificate["triangles_out"]);
         assert!(certificate["gap"].as_f64() < Some(1e-100), "{certificate}");

@@ -375,7 +375,7 @@ fn no_two_outputs_are_one_file() {
         std::os::unix::fs::symlink("b.glb", workplace.path("link")).unwrap();
         workplace
             .run("export ball.json -o b.glb --report link")
-            .error(&["the output link would be written over another output, b.glb"]);
+            .error(&["the output link would overwrite another output, b.glb"]);
         workplace.run("export ball.json --report link").success();
         assert_eq!(
             workplace.read_json("b.glb")["objects"][0]["object"],

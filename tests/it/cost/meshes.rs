@@ -400,7 +400,7 @@ fn errors_name_the_flag() {
         ),
         (
             "--tolerances 1e-1,1e-2,1e-1",
-            ["--tolerances", "1.000e-1 is there twice"],
+            ["--tolerances", "1.000e-1 is given twice"],
         ),
         (
             "--tolerances 1e-1,0",

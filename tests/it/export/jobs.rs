@@ -263,7 +263,7 @@ fn settings_that_do_not_go_together_are_refused_before_the_work() {
                 levels: vec![one, one],
                 ..default()
             },
-            "there twice",
+            "given twice",
         ),
         (
             "out.glb",

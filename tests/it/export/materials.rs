@@ -193,7 +193,7 @@ fn everything_is_written_once_and_nothing_that_is_not_used() {
         after.json["extensionsRequired"],
         json!(["KHR_texture_transform"])
     );
-    assert_eq!(notes, ["extension ACME_fog: not carried over"]);
+    assert_eq!(notes, ["extension ACME_fog: not copied"]);
 
     let (after, notes) = pass_through("webp.glb");
     assert_eq!(after.json["images"].as_array().map_or(0, Vec::len), 2);
@@ -235,8 +235,9 @@ fn what_is_wrong_with_a_material_is_mended_and_named() {
     let surface = json!({"baseColorFactor": [1.0, 0.0, 0.5, 1], "metallicFactor": 1.0});
     let expected = json!([{"pbrMetallicRoughness": surface, "emissiveFactor": [1, 1, 1.0]}]);
     assert_eq!(after.json["materials"], expected);
-    let named =
-        |factor: &str| format!("materials[0]: {factor} brought to the nearest that glTF allows");
+    let named = |factor: &str| {
+        format!("materials[0]: {factor} changed to the nearest value that glTF allows")
+    };
     assert_eq!(
         notes,
         [
@@ -274,10 +275,7 @@ fn extras_of_nodes_and_meshes_travel() {
 #[test]
 fn what_is_no_surface_is_named() {
     let (_, notes) = pass_through("lights_and_cameras.glb");
-    assert_eq!(
-        notes,
-        ["1 camera: not carried over", "1 light: not carried over",]
-    );
+    assert_eq!(notes, ["1 camera: not copied", "1 light: not copied",]);
 }
 
 #[test]
@@ -288,7 +286,7 @@ fn a_material_library_is_translated() {
         [
             "vertex colours: taken as sRGB, made linear",
             "material \"lamp\": bump map taken as a normal map",
-            "material \"lamp\": map_Ks not carried over",
+            "material \"lamp\": map_Ks not copied",
         ]
     );
     // Twice as many pictures across; counted from above, -1 is where 0 was from below.

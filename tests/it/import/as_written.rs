@@ -81,7 +81,9 @@ fn a_matrix_with_rounding_is_read_and_a_perspective_refused() {
     assert_eq!(bounds(&model), CUBE);
     assert_eq!(
         notes,
-        ["nodes: 1 matrix taken as affine, whose bottom row is [0, 0, 0, 1] but for 1e-7"]
+        [
+            "nodes: the bottom row of 1 matrix differs from [0, 0, 0, 1] by up to 1e-7 and is ignored"
+        ]
     );
     json["nodes"][0]["matrix"][3] = json!(0.01);
     let error = read_json(&json).expect_err("a perspective");
@@ -147,8 +149,8 @@ fn weights_are_divided_by_their_sum_and_what_is_none_is_refused() {
     up(&[], skinned([1.0; 3], &[IDENTITY, [0.0; 16]], 9));
     let mut noisy = IDENTITY;
     noisy[3] = 3e-7;
-    let noisy_note = "skins[0].inverseBindMatrices: 1 matrix taken as affine, whose bottom row is \
-                      [0, 0, 0, 1] but for 3e-7";
+    let noisy_note = "skins[0].inverseBindMatrices: the bottom row of 1 matrix differs from [0, 0, 0, 1] \
+                      by up to 3e-7 and is ignored";
     let (model, found) = read(&skinned([1.0; 3], &[noisy, IDENTITY], 1).bytes()).expect("read");
     assert_eq!(bounds(&model), [[0.0, 1.0, 0.0], [1.0, 2.0, 0.0]]);
     assert_eq!(found[0], noisy_note);
@@ -416,7 +418,7 @@ fn what_has_extras_without_a_place_is_named() {
         "1 skin",
         "1 scene that is not read",
     ] {
-        let note = format!("extras of {what}: not carried over");
+        let note = format!("extras of {what}: not copied");
         assert!(notes.contains(&note), "{note}: {notes:?}");
     }
 }

@@ -66,8 +66,8 @@ fn sixty_sets_of_sixteen_million_zeros_are_refused() {
     assert_eq!(
         error,
         format!(
-            "meshes[0].primitives[0] (mesh \"made\"), POSITION, accessors[{positions}]: with it 48000000 numbers would \
-             be read, expected at most {LIMIT} of a file of this size"
+            "meshes[0].primitives[0] (mesh \"made\"), POSITION, accessors[{positions}]: needs 48000000 numbers, \
+             expected at most {LIMIT} of a file of this size"
         )
     );
 }

@@ -276,10 +276,7 @@ fn colors_of_every_type_mean_the_same() {
 #[test]
 fn attributes_of_its_own_are_named() {
     let (_, notes) = read("custom_attributes.glb");
-    assert_eq!(
-        notes,
-        ["mesh \"rectangle\": _DOPPLER, _HEAT not carried over"]
-    );
+    assert_eq!(notes, ["mesh \"rectangle\": _DOPPLER, _HEAT not copied"]);
 }
 
 #[test]
@@ -498,7 +495,7 @@ fn obj_groups_and_materials_become_parts() {
     );
     assert_eq!(
         notes[1],
-        "material \"gold\" is not defined: parts have no more than its name"
+        "material \"gold\" is not defined: parts keep only its name"
     );
 }
 

@@ -130,7 +130,7 @@ fn packed_pictures_may_differ_in_size_and_lie_but_not_exceed_the_limit() {
     assert_eq!((row[0], row[3]), (0, 200));
     assert!(row.is_sorted() && row[1] < 100 && row[2] > 100, "{row:?}");
     let expected =
-        "image \"rough + metal\" made of pictures of different sizes: scaled to the larger one";
+        "image \"rough + metal\" combines images of different sizes: scaled to the larger size";
     assert_eq!(notes, [expected]);
     let base = pixels(&model, "baseColorTexture");
     for (x, y, pixel) in base.enumerate_pixels() {
@@ -151,7 +151,7 @@ fn packed_pictures_may_differ_in_size_and_lie_but_not_exceed_the_limit() {
         pixels(&model, "metallicRoughnessTexture").dimensions(),
         (2, 1)
     );
-    let expected = "material \"m\": map_Pm (laid in another way than map_Pr) not carried over";
+    let expected = "material \"m\": map_Pm (laid in another way than map_Pr) not copied";
     assert_eq!(notes, [expected]);
     let (model, notes) = with("map_Pr rough.png\nmap_Pm metal.png", 20);
     let material = model.parts[0].material.as_ref().expect("a material");
@@ -160,7 +160,7 @@ fn packed_pictures_may_differ_in_size_and_lie_but_not_exceed_the_limit() {
         notes,
         [
             "material \"m\": map_Pm (4 x 3 pixels, expected at most 6 more; --max-texture-pixels \
-             allows more) not carried over"
+             allows more) not copied"
         ]
     );
 }
@@ -170,19 +170,19 @@ fn what_is_wrong_beside_the_shape_is_passed_over_with_a_note() {
     for (name, note) in [
         (
             "dangling_vn.obj",
-            "a vt or vn of a corner that is not there: passed over 24 times",
+            "a vt or vn of a corner that is not there: ignored 24 times",
         ),
         (
             "nan_vn.obj",
-            "a vn that is not three finite numbers: passed over once, in line 9",
+            "a vn that is not three finite numbers: ignored once, in line 9",
         ),
         (
             "rgba7.obj",
-            "numbers behind the colour of v: passed over 8 times, first in line 1",
+            "numbers behind the colour of v: ignored 8 times, first in line 1",
         ),
         (
             "w_weight.obj",
-            "the fourth number of v: passed over 8 times, first in line 1",
+            "the fourth number of v: ignored 8 times, first in line 1",
         ),
     ] {
         let (model, notes) = read(&fixture(name));
