@@ -16,7 +16,7 @@ matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402  (after the choice of the backend)
 
 GALLERY = pathlib.Path(__file__).parent
-COMMAND = ["cargo", "test", "--test", "hard_cases", "positions_seen", "--", "--nocapture"]
+COMMAND = ["cargo", "test", "--test", "it", "positions_seen", "--", "--nocapture"]
 ROW = re.compile(r"^ *(\S+) +(\S+)  rapidity ([^,]+),", re.MULTILINE)
 NO_DIGIT = 2.0**52
 EXACT = 0.02

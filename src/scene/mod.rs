@@ -1,6 +1,6 @@
 //! What a user asks for: the observer, the objects, the steps; read from JSON and checked.
 //!
-//! A scene is text and numbers only. Files that it names are read by the `io` room.
+//! A scene is text and numbers only. Files that it names are read by the room `jobs`.
 
 mod attributes;
 mod built_in;
