@@ -92,7 +92,7 @@ impl GuideArgs {
     ) -> (Vec<(Mesh, Strokes<DVec3>)>, Vec<DVec3>) {
         let mut ghosts = Vec::new();
         for (object, parts) in placed.objects() {
-            let view = placed.view(object, step);
+            let view = placed.view(object, step).expect("a step of the scene");
             let bounds = parts.iter().filter_map(|(_, part)| part.mesh().bounds());
             let (low, high) = bounds.fold(
                 (DVec3::INFINITY, DVec3::NEG_INFINITY),

@@ -145,7 +145,7 @@ impl<'a> Studio<'a> {
     fn observer_view(&mut self, step: usize, fov: f64) -> anyhow::Result<Picture> {
         let places = rough_places(self.placed, step);
         let camera = self.camera.at_observer(fov, &places)?;
-        let moment = self.placed.scene().moment(step);
+        let moment = self.placed.scene().moment(step).context("no such step")?;
         let viewpoint = Viewpoint::Observer(&moment);
         let mapped;
         let scenery = match &self.at_rest {

@@ -51,7 +51,7 @@ impl View {
     ///
     /// # Panics
     ///
-    /// If there are not as many places in `seen` as points.
+    /// If there are not as many places in `seen` as points, as [`slice::copy_from_slice`] does.
     pub fn seen_positions(&self, positions_rest: &[DVec3], seen: &mut [DVec3]) {
         assert_eq!(positions_rest.len(), seen.len(), "a place for each point");
         self.see_by_blocks::<false>(Batch {

@@ -22,7 +22,7 @@ use crate::spacetime::{Velocity, exact, harmless_scale, heading, length, unit};
 /// The map from points at rest to the places where one moving observer sees them.
 ///
 /// Homogeneous of degree 1, one-to-one, linear along every ray from the observer, smooth except at the
-/// observer itself.
+/// observer itself. An offset that is not finite gives results that are not finite, and never a panic.
 ///
 /// # Example
 ///

@@ -31,6 +31,8 @@ pub struct View {
 
 impl View {
     /// How the observer of `moment` sees what moves along with `object`.
+    ///
+    /// An event that is not finite, in either, puts the observer infinitely far away: everything is seen at infinity.
     pub fn new(moment: &Moment, object: &WorldLine) -> Self {
         let rest_to_observer = moment.rest_to_observer(object.velocity);
         let relative = rest_to_observer.boost_velocity();
@@ -95,7 +97,8 @@ impl View {
         self.rest_to_observer.rotation()
     }
 
-    /// Where the point `position_rest` is seen, in the observer's frame.
+    /// Where the point `position_rest` is seen, in the observer's frame: infinite where that is beyond `f64`, or where the
+    /// point or the observer's place is.
     pub fn seen_position(&self, position_rest: DVec3) -> DVec3 {
         self.turned(self.map.seen_position(self.offset(position_rest)))
     }

@@ -10,7 +10,8 @@ use crate::spacetime::unit;
 impl Mesh {
     /// Edges at which the surface ends, or turns by more than `angle` radians from one triangle to the next.
     ///
-    /// Vertices at one place count as one: a seam of normals or of texture coordinates is no edge by itself.
+    /// Vertices at one place count as one: a seam of normals or of texture coordinates is no edge by itself. An `angle` of NaN
+    /// leaves the edges at which the surface ends.
     pub fn sharp_edges(&self, angle: f64) -> Vec<[DVec3; 2]> {
         let mut normals: HashMap<[[u64; 3]; 2], Vec<DVec3>> = HashMap::new();
         let places = |corners: &[u32; 3]| corners.map(|corner| self.positions()[corner as usize]);

@@ -195,6 +195,9 @@ impl Mesh {
     }
 
     /// The mesh moved, turned, scaled or mirrored; mirrored triangles keep their outside.
+    ///
+    /// A transform that is not finite, or that takes a vertex beyond `f64`, makes a mesh with vertices that are not finite:
+    /// [`PlacedScene::new`](crate::PlacedScene::new) and the writers of files refuse it, pictures show nothing there.
     #[must_use]
     pub fn transformed(mut self, transform: &DAffine3) -> Self {
         if *transform == DAffine3::IDENTITY {

@@ -2,8 +2,10 @@
 
 use thiserror::Error;
 
+use crate::spacetime::MAX_RAPIDITY;
+
 /// Why a scene and models make no placed scene, or a placed scene no photosurfaces.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PlacedSceneError {
     /// Not one model for each object.
@@ -21,6 +23,22 @@ pub enum PlacedSceneError {
         object: String,
         /// The part of its model.
         part: String,
+    },
+    /// A model that is not what the shape of its object makes.
+    #[error(
+        "the model of object \"{object}\" is not that of its shape, expected the one that `load_models` makes"
+    )]
+    Shape {
+        /// The object in the scene.
+        object: String,
+    },
+    /// A velocity that was composed of others and is faster than any that may be given.
+    #[error("the rapidity of {who} is {rapidity}, expected at most {MAX_RAPIDITY}")]
+    TooFast {
+        /// The observer, or the object in the scene.
+        who: String,
+        /// Its rapidity.
+        rapidity: f64,
     },
     /// A step that the scene does not have.
     #[error("step {step} of a scene with {steps} steps, expected less than {steps}")]

@@ -13,13 +13,15 @@ use super::plan::{Plan, Surface, Unrefined};
 use super::{Photosurface, PlacedSceneError, SurfaceOptions};
 use crate::light_cone::View;
 use crate::material::{Model, Part};
-use crate::scene::{MarkerRadius, Object, Scene, Tolerance};
+use crate::scene::{MarkerRadius, Object, Scene, Source, Tolerance};
 use crate::shape::{Appearance, Color, Shape};
-use crate::spacetime::Velocity;
+use crate::spacetime::{MAX_RAPIDITY, Velocity};
 
 /// The observer's marker in files.
 const MARKER_NAME: &str = "observer";
 const MARKER_RESOLUTION: u32 = 24;
+
+const A_STEP: &str = "whoever asks for a plan asks for a step of the scene";
 
 /// A scene with the geometry of its objects, placed in their rest frames: all that photosurfaces need.
 ///
@@ -55,7 +57,9 @@ impl PlacedScene {
     ///
     /// # Errors
     ///
-    /// Not as many models as objects, or a mesh with a vertex that is not finite.
+    /// Not as many models as objects, a mesh with a vertex that is not finite, a model that is not that of its object's
+    /// shape, as [`load_models`](crate::load_models) makes it, or a composed velocity faster than
+    /// [`MAX_RAPIDITY`].
     pub fn new(scene: Scene, models: Vec<Model>) -> Result<Self, PlacedSceneError> {
         let objects = scene.objects();
         if objects.len() != models.len() {
@@ -64,7 +68,13 @@ impl PlacedScene {
                 models: models.len(),
             });
         }
+        check_rapidity("the observer", scene.observer().velocity)?;
         for (object, model) in objects.iter().zip(&models) {
+            check_rapidity(&format!("object \"{}\"", object.name), object.velocity)?;
+            if !is_of_its_shape(object, model) {
+                let object = object.name.clone();
+                return Err(PlacedSceneError::Shape { object });
+            }
             if let Some(part) = model.parts.iter().find(|part| !part.mesh().is_finite()) {
                 return Err(PlacedSceneError::NotFinite {
                     object: object.name.clone(),
@@ -147,19 +157,18 @@ impl PlacedScene {
         all.filter(|(wanted, _)| names::plain(wanted) != *wanted)
     }
 
-    /// How the observer sees what moves along with an object, at one step.
-    ///
-    /// # Panics
-    ///
-    /// If the scene has no such step.
-    pub fn view(&self, object: &Object, step: usize) -> View {
-        View::new(&self.scene.moment(step), &object.world_line())
+    /// How the observer sees everything that moves along with an object, at one step, counted from 0; `None` where the
+    /// scene has no such step.
+    pub fn view(&self, object: &Object, step: usize) -> Option<View> {
+        let moment = self.scene.moment(step)?;
+        Some(View::new(&moment, &object.world_line()))
     }
 
     /// The observer's velocity in the rest frame of an object at the step, of all, at which it is fastest.
     pub fn fastest_relative_velocity(&self, object: &Object) -> Velocity {
         let steps = 0..self.scene.steps().len();
-        let velocities = steps.map(|step| self.view(object, step).relative_velocity());
+        let views = steps.filter_map(|step| self.view(object, step));
+        let velocities = views.map(|view| view.relative_velocity());
         let faster = |a: Velocity, b: Velocity| if b.rapidity() > a.rapidity() { b } else { a };
         velocities.reduce(faster).unwrap_or_default()
     }
@@ -208,7 +217,7 @@ impl PlacedScene {
         const RANGE: std::ops::Range<f64> = 1e-30..1e30;
         let mut objects = self.scene.objects().iter().zip(boxes);
         objects.all(|(object, boxes)| {
-            let view = self.view(object, step);
+            let view = self.view(object, step).expect(A_STEP);
             let stretch = view.relative_velocity().rapidity().exp();
             boxes.iter().all(|&(low, high)| {
                 let away = (low - view.observer_rest()).length() + (high - low).length();
@@ -230,7 +239,7 @@ impl PlacedScene {
         step: usize,
         wanted: SurfaceOptions,
     ) -> Plan<'a> {
-        let view = self.view(object, step);
+        let view = self.view(object, step).expect(A_STEP);
         let tolerance = self.scene.tolerance(object);
         Plan::new(
             placed_object,
@@ -277,6 +286,33 @@ impl PlacedScene {
             around: surface.around,
         }
     }
+}
+
+/// What a velocity that was composed may exceed: two of this rapidity still have a relative one within `f64`.
+fn check_rapidity(who: &str, velocity: Velocity) -> Result<(), PlacedSceneError> {
+    match velocity.rapidity() {
+        rapidity if rapidity <= MAX_RAPIDITY => Ok(()),
+        rapidity => Err(PlacedSceneError::TooFast {
+            who: who.to_owned(),
+            rapidity,
+        }),
+    }
+}
+
+/// Whether the model of an object has the geometry of its shape, if that is where it comes from: certificates count on
+/// how far facets are from the surface that they stand for.
+fn is_of_its_shape(object: &Object, model: &Model) -> bool {
+    let Source::Shape(shape, appearance) = &object.source else {
+        return true;
+    };
+    let Ok(made) = shape.model(appearance) else {
+        return false;
+    };
+    let alike = |(given, made): (&Part, &Part)| {
+        let (given, made) = (given.mesh(), made.mesh());
+        given.positions() == made.positions() && given.triangles() == made.triangles()
+    };
+    model.parts.len() == made.parts.len() && model.parts.iter().zip(&made.parts).all(alike)
 }
 
 /// How a part of an object of so many parts would be called.

@@ -163,7 +163,11 @@ mod tests {
     use glam::DQuat;
 
     use super::*;
-    use crate::spacetime::{Event, Velocity};
+    use crate::spacetime::{Event, Rotation, Velocity};
+
+    fn rotation(turn: DQuat) -> Rotation {
+        Rotation::new(turn).unwrap()
+    }
 
     fn line(time: f64, position: DVec3, velocity: Velocity) -> WorldLine {
         WorldLine {
@@ -191,7 +195,8 @@ mod tests {
                 let seen_from = line(0.5, DVec3::new(1.0, 2.0, -3.0), observer);
                 let thing = line(0.0, DVec3::new(0.25, -1.0, 2.0), object);
                 let turn = DQuat::from_rotation_arc(DVec3::Z, unit(other_way).unwrap());
-                let aberration = Aberration::new(&seen_from.moment(1.5).turned(turn), &thing);
+                let aberration =
+                    Aberration::new(&seen_from.moment(1.5).turned(rotation(turn)), &thing);
                 for seen in directions() {
                     let ray = aberration.ray(seen);
                     let distance = 3.0;
@@ -240,7 +245,9 @@ mod tests {
         let other = Velocity::from_beta(0.6, DVec3::X).unwrap();
         let turn = DQuat::from_rotation_x(1.3);
         let aberration = Aberration::new(
-            &line(0.0, DVec3::ZERO, velocity).moment(0.0).turned(turn),
+            &line(0.0, DVec3::ZERO, velocity)
+                .moment(0.0)
+                .turned(rotation(turn)),
             &line(0.0, DVec3::Y, other),
         );
         for seen in directions() {

@@ -123,7 +123,7 @@ impl Camera {
         self.size
     }
 
-    /// The unit vector to what is seen at `place`.
+    /// The unit vector to what is seen at `place`; one of NaN where that is not finite.
     pub fn direction(&self, place: DVec2) -> DVec3 {
         let part = place / self.extent();
         let local = match self.projection {
@@ -141,7 +141,7 @@ impl Camera {
     }
 
     /// The place on the picture, or beside it, where `direction` of any length is seen; `None` behind a
-    /// pinhole camera.
+    /// pinhole camera, and where the place is beyond `f64`.
     pub fn place(&self, direction: DVec3) -> Option<DVec2> {
         let local = self.axes.transpose() * direction;
         let part = match self.projection {
@@ -158,7 +158,8 @@ impl Camera {
                 DVec2::new(longitude / TAU + 0.5, 0.5 - latitude / PI)
             }
         };
-        Some(part * self.extent())
+        let place = part * self.extent();
+        place.is_finite().then_some(place)
     }
 
     fn extent(&self) -> DVec2 {

@@ -318,7 +318,7 @@ mod tests {
         ] {
             let scene = Scene::from_json(BuiltInScene::named(name).unwrap().json).unwrap();
             let scenery = scenery(&scene);
-            let moment = scene.moment(0);
+            let moment = scene.moment(0).unwrap();
             let viewpoint = Viewpoint::Observer(&moment);
             let crowd = Crowd::new(scenery.bodies.iter(), viewpoint);
             let alone = scenery.bodies.iter();
@@ -358,7 +358,7 @@ mod tests {
         };
         let ball = scene(json!({ "sphere": { "radius": 9 } }));
         let cube = scene(json!({ "box": { "size": [9, 9, 9] } }));
-        let moment = ball.moment(0);
+        let moment = ball.moment(0).unwrap();
         let mut mapped = Scenery::new();
         let cubes = scenery(&cube);
         let Source::Shape(shape, appearance) = &cube.objects()[0].source else {
@@ -413,7 +413,7 @@ mod tests {
         });
         let scene = Scene::from_json(&scene.to_string()).unwrap();
         let scenery = scenery(&scene);
-        let moment = scene.moment(0);
+        let moment = scene.moment(0).unwrap();
         let crowd = Crowd::new(scenery.bodies.iter(), Viewpoint::Observer(&moment));
         counted::BOXES.set(0);
         let (mut rays_cast, mut hits) = (0, 0);

@@ -52,7 +52,7 @@ impl Picture {
     }
 }
 
-/// Width of a text whose capitals are so many pixels high.
+/// Width of a text, in pixels, whose capitals are `height_px` pixels high; not finite where that is not.
 pub fn lettering_width(text: &str, height_px: f64) -> f64 {
     let font = FACE.as_scaled(scale(height_px));
     let advances = text

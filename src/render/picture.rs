@@ -37,6 +37,9 @@ impl Picture {
     pub fn paste(&mut self, other: &Picture, x: u32, y: u32) {
         let (width, height) = (self.size.width(), self.size.height());
         let columns = other.size.width().min(width.saturating_sub(x)) as usize;
+        if columns == 0 {
+            return;
+        }
         let rows = other.bytes.chunks_exact(3 * other.size.width() as usize);
         for (row, y) in rows.zip(y..height) {
             let start = 3 * (y as usize * width as usize + x as usize);
@@ -104,6 +107,8 @@ mod tests {
         sheet.paste(&of(2, 2, 1), 1, 0);
         sheet.paste(&of(5, 5, 2), 3, 2);
         sheet.paste(&of(1, 1, 3), 9, 9);
+        sheet.paste(&of(1, 1, 4), 9, 2);
+        sheet.paste(&of(1, 1, 5), u32::MAX, 2);
         let levels: Vec<_> = sheet.bytes().chunks(3).map(|pixel| pixel[0]).collect();
         assert_eq!(levels, [0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 2]);
     }

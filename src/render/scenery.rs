@@ -59,7 +59,7 @@ const FACETS: f64 = 1e-4;
 ///     }
 /// }
 /// let camera = Camera::new(PictureSize::new(64, 48)?, Projection::Pinhole { vertical_fov_deg: 30.0 }, DVec3::NEG_Z)?;
-/// let moment = placed.scene().moment(0);
+/// let moment = placed.scene().moment(0).expect("a scene has a first step");
 /// let picture = scenery.picture(
 ///     &camera,
 ///     Viewpoint::Observer(&moment),
@@ -80,7 +80,7 @@ pub struct Scenery {
 /// How a picture is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PictureOptions {
-    /// Rays a pixel along each side: N is N x N rays, evenly spread; at least 1.
+    /// Rays a pixel along each side: N is N x N rays, evenly spread; from 1 to 1024, to which any other number is brought.
     pub samples: u32,
     /// What is seen where nothing is.
     pub background: Color,
@@ -260,9 +260,12 @@ impl Scenery {
     }
 }
 
-/// Places in a pixel, from (0, 0) to (1, 1): the middles of `samples` by `samples` squares, at least one.
+/// Rays a pixel along each side, at most: a million a pixel show all that eight bits do.
+const MAX_SAMPLES: u32 = 1024;
+
+/// Places in a pixel, from (0, 0) to (1, 1): the middles of `samples` by `samples` squares, from 1 to [`MAX_SAMPLES`].
 pub(crate) fn grid_places(samples: u32) -> impl Iterator<Item = DVec2> {
-    let samples = samples.max(1);
+    let samples = samples.clamp(1, MAX_SAMPLES);
     let columns = move |row| (0..samples).map(move |column| DVec2::new(column.into(), row));
     let squares = (0..samples).flat_map(move |row| columns(row.into()));
     squares.map(move |square| (square + 0.5) / f64::from(samples))
@@ -274,8 +277,10 @@ fn fine_mesh(object: &Object, shape: &Shape, appearance: &Appearance, part: &Par
         .mesh()
         .bounds()
         .map_or(0.0, |(low, high)| low.distance(high));
-    let fine = shape.within(FACETS * size / object.scale.largest());
-    let made = fine.model(appearance).ok();
+    // Of a part without an extent nothing says how fine it has to be.
+    let has_extent = size > 0.0 && size.is_finite();
+    let fine = has_extent.then(|| shape.within(FACETS * size / object.scale.largest()));
+    let made = fine.and_then(|fine| fine.model(appearance).ok());
     let made = made.and_then(|mut model| model.parts.pop());
     let made = made.map(|part| part.transformed(&object.model_to_rest()));
     made.as_ref().unwrap_or(part).mesh().clone()

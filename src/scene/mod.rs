@@ -8,7 +8,6 @@ mod forms;
 mod json;
 mod marker;
 mod place;
-mod rotation;
 mod scale;
 mod tolerance;
 
@@ -17,7 +16,6 @@ pub use built_in::{BUILT_IN_SCENES, BuiltInScene};
 pub use json::SceneError;
 pub use marker::{MarkerRadius, MarkerRadiusError};
 pub use place::{Place, PlaceError, Time, TimeError};
-pub use rotation::{Rotation, RotationError};
 pub use scale::Scale;
 pub use tolerance::{Tolerance, ToleranceError, Unit};
 
@@ -33,6 +31,7 @@ use thiserror::Error;
 use crate::material::Model;
 use crate::shape::{Appearance, Color, Shape};
 use crate::spacetime::{Event, Moment, Velocity, WorldLine};
+pub use crate::spacetime::{Rotation, RotationError};
 use forms::{FromObject, Steps, VelocityForm};
 
 /// Most evenly spaced steps one scene may have: a guard against slips of the pen.
@@ -254,13 +253,10 @@ impl Scene {
         &self.steps
     }
 
-    /// What the observer is at one step: event, velocity and axes.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such step.
-    pub fn moment(&self, step: usize) -> Moment {
-        self.observer.moment(self.steps[step])
+    /// Event, velocity and axes of the observer at one step, counted from 0; `None` where the scene has no such step.
+    pub fn moment(&self, step: usize) -> Option<Moment> {
+        let proper_time = self.steps.get(step)?;
+        Some(self.observer.moment(*proper_time))
     }
 }
 
@@ -279,10 +275,15 @@ pub fn even_steps(from: f64, to: f64, count: usize) -> Result<Vec<f64>, InvalidS
         }
     }
     let intervals = (count - 1).max(1) as f64;
-    let step = |index: usize| match index {
-        0 => from,
-        _ if index == count - 1 => to,
-        _ => from + (to - from) * (index as f64 / intervals),
+    let step = |index: usize| {
+        let part = index as f64 / intervals;
+        match index {
+            0 => from,
+            _ if index == count - 1 => to,
+            // The difference of two numbers of a scene may be beyond f64.
+            _ if !(to - from).is_finite() => from * (1.0 - part) + to * part,
+            _ => from + (to - from) * part,
+        }
     };
     Ok((0..count).map(step).collect())
 }

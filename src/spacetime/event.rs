@@ -8,7 +8,8 @@ use super::exact::two_sum;
 
 /// A point of spacetime in the coordinates of some frame, or the difference of two.
 ///
-/// Time and position share one unit (c = 1).
+/// Time and position share one unit (c = 1). Events are plain numbers that nothing checks: sums and products of numbers
+/// that are not finite are not finite either.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Event {
     /// Coordinate time.

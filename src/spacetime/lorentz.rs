@@ -8,7 +8,7 @@
 
 use glam::{DQuat, DVec3};
 
-use super::{Event, Velocity, exact, harmless_scale, length, unit};
+use super::{Event, Rotation, Velocity, exact, harmless_scale, length, unit};
 
 /// A proper orthochronous Lorentz transformation: a boost followed by a rotation.
 ///
@@ -43,6 +43,9 @@ impl Lorentz {
 
     /// This transformation, then `next`.
     ///
+    /// The rapidity of a composition is at most 700, twice [`MAX_RAPIDITY`](crate::MAX_RAPIDITY), which no two
+    /// velocities that were given exceed: a larger one is held there, for its `gamma` would be beyond `f64`.
+    ///
     /// # Accuracy
     ///
     /// Rapidity, direction and rotation of two boosts to a few units in the last place, at any pair of velocities, also
@@ -62,7 +65,12 @@ impl Lorentz {
 
     /// This transformation, after which `rotation` turns the coordinates.
     #[must_use]
-    pub fn turned(&self, rotation: DQuat) -> Self {
+    pub fn turned(&self, rotation: Rotation) -> Self {
+        self.turned_by(rotation.get())
+    }
+
+    /// The same with a unit quaternion.
+    pub(super) fn turned_by(&self, rotation: DQuat) -> Self {
         Self {
             boost: self.boost,
             rotation: (rotation * self.rotation).normalize(),
@@ -97,7 +105,7 @@ impl Lorentz {
     /// # Accuracy
     ///
     /// A few units in the last place of the larger of the new time and the new distance
-    /// (`tests/it/physics/lorentz.rs`).
+    /// (`tests/it/physics/lorentz.rs`). A coordinate that is not finite makes others that are not.
     pub fn apply(&self, event: Event) -> Event {
         let direction = self.boost.direction();
         let heading = self.boost.heading();

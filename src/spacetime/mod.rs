@@ -7,12 +7,14 @@ mod event;
 pub(crate) mod exact;
 mod lorentz;
 mod moment;
+mod rotation;
 mod velocity;
 mod world_line;
 
 pub use event::Event;
 pub use lorentz::Lorentz;
 pub use moment::Moment;
+pub use rotation::{Rotation, RotationError};
 pub use velocity::{MAX_RAPIDITY, Velocity, VelocityError};
 pub use world_line::WorldLine;
 

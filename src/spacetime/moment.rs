@@ -1,13 +1,14 @@
 //! What an observer is at one instant.
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
-use super::{Event, Lorentz, Velocity, WorldLine};
+use super::{Event, Lorentz, Rotation, Velocity, WorldLine};
 
 /// What an observer is at one instant: event, velocity and axes.
 ///
 /// All that is seen follows from a moment and the worldlines of what there is to see; whether the observer coasts or
-/// flies, before and after, does not matter.
+/// flies, before and after, does not matter. An event, a displacement or a proper time that is not finite makes a moment
+/// whose observer is infinitely far from everything.
 ///
 /// # Accuracy
 ///
@@ -81,9 +82,10 @@ impl Moment {
     ///
     /// What was seen in the direction `rotation * v` is then seen in the direction `v`.
     #[must_use]
-    pub fn turned(&self, rotation: DQuat) -> Self {
+    pub fn turned(&self, rotation: Rotation) -> Self {
+        let back = rotation.get().inverse();
         Self {
-            scene_to_observer: self.scene_to_observer.turned(rotation.inverse()),
+            scene_to_observer: self.scene_to_observer.turned_by(back),
             ..self.clone()
         }
     }
@@ -150,7 +152,13 @@ impl WorldLine {
 
 #[cfg(test)]
 mod tests {
+    use glam::DQuat;
+
     use super::*;
+
+    fn rotation(turn: DQuat) -> Rotation {
+        Rotation::new(turn).expect("a unit quaternion")
+    }
 
     fn velocity(rapidity: f64, direction: DVec3) -> Velocity {
         Velocity::from_rapidity(rapidity, direction).expect("not too fast")
@@ -172,7 +180,8 @@ mod tests {
     fn legs_add_up_to_the_way_they_are_parts_of() {
         let start = velocity(1.5, DVec3::new(1.0, -2.0, 0.5));
         let origin = Event::new(0.5, DVec3::new(3.0, 1.0, -1.0));
-        let start = Moment::new(origin, Lorentz::boost(start)).turned(DQuat::from_rotation_y(0.7));
+        let start = Moment::new(origin, Lorentz::boost(start))
+            .turned(rotation(DQuat::from_rotation_y(0.7)));
         let coasted = start.coasted(1.25).coasted(-3.0);
         assert!(apart(coasted.event(), start.coasted(-1.75).event()) < 1e-14);
         let ahead = DVec3::new(0.6, 0.0, -0.8);
@@ -193,7 +202,7 @@ mod tests {
     #[test]
     fn thrust_is_in_the_observers_own_axes() {
         let left = DQuat::from_rotation_y(0.5 * std::f64::consts::PI);
-        let start = Moment::new(Event::default(), Lorentz::IDENTITY).turned(left);
+        let start = Moment::new(Event::default(), Lorentz::IDENTITY).turned(rotation(left));
         let flown = thrust(&start, DVec3::NEG_Z, 1.0);
         let expected = Event::new(1f64.sinh(), DVec3::NEG_X * (1f64.cosh() - 1.0));
         assert!(apart(flown.event(), expected) < 1e-15);

@@ -180,11 +180,11 @@ impl Velocity {
         Self::checked(stretch.ln(), stretch, vector)
     }
 
-    /// For results of this module: `direction` is a unit vector, `rapidity` may reach twice
-    /// [`MAX_RAPIDITY`].
+    /// For results of this module: `direction` is a unit vector, `rapidity` is held at twice [`MAX_RAPIDITY`].
     pub(super) fn from_parts(rapidity: f64, stretch: f64, direction: DVec3) -> Self {
+        let (rapidity, stretch) = held(rapidity, stretch);
         debug_assert!((direction.length() - 1.0).abs() < 1e-9);
-        debug_assert!((0.0..=2.0 * MAX_RAPIDITY * (1.0 + 1e-9)).contains(&rapidity));
+        debug_assert!(rapidity >= 0.0);
         debug_assert!((stretch.ln() - rapidity).abs() <= 1e-9);
         Self {
             rapidity,
@@ -204,13 +204,10 @@ impl Velocity {
         } else {
             (*self, stretch)
         };
+        let (size, stretch) = held(rapidity.abs(), stretch);
         Self {
-            rapidity: rapidity.abs(),
-            stretch: if rapidity == 0.0 {
-                1.0
-            } else {
-                stretch.max(1.0)
-            },
+            rapidity: size,
+            stretch: if size == 0.0 { 1.0 } else { stretch.max(1.0) },
             ..carrier
         }
     }
@@ -280,6 +277,15 @@ impl Velocity {
             heading: -self.heading,
             ..*self
         }
+    }
+}
+
+/// A rapidity of at most twice [`MAX_RAPIDITY`], rounding aside, and its exponential, whose `gamma` is within `f64`.
+fn held(rapidity: f64, stretch: f64) -> (f64, f64) {
+    const LARGEST: f64 = 2.0 * MAX_RAPIDITY;
+    match rapidity > LARGEST * (1.0 + 1e-9) {
+        true => (LARGEST, LARGEST.exp()),
+        false => (rapidity, stretch),
     }
 }
 

@@ -2,7 +2,9 @@
 
 use super::{Event, Velocity};
 
-/// The worldline of an observer in uniform motion.
+/// The worldline of an observer or an object in uniform motion.
+///
+/// The origin is plain numbers, as any [`Event`]: one that is not finite is infinitely far from everything.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorldLine {
     /// The event at proper time 0.

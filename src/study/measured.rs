@@ -73,7 +73,7 @@ pub(super) fn measure(
         let photosurfaces = placed.photosurfaces(step, wanted);
         let photosurfaces = photosurfaces.expect("a step of the scene");
         for (photosurface, object) in photosurfaces.zip(owners) {
-            let view = placed.view(object, step);
+            let view = placed.view(object, step).expect("a step of the scene");
             let surface = TrueSurface::of(object);
             let here = photosurface.facts.triangles;
             let places = (samples as f64 * here as f64 / triangles as f64).ceil() as usize;

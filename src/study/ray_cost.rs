@@ -206,7 +206,7 @@ impl Studio<'_> {
         let scene = self.placed.scene();
         let mut light = Light::new();
         for (step, camera) in (0..scene.steps().len()).zip(self.cameras) {
-            let moment = scene.moment(step);
+            let moment = scene.moment(step).expect("a step of the scene");
             let viewpoint = Viewpoint::Observer(&moment);
             let options = PictureOptions::default();
             let places = |pixel| places(step, pixel);

@@ -114,7 +114,8 @@ pub fn edge_gap(a: DVec3, b: DVec3) -> f64 {
 /// [`edge_gap`], whatever the triangle (both proven). Measured in `tests/it/tessellation/gap.rs`: above the true gap by
 /// less than 1e-12 of it for triangles with angles on the observer's sky of at least 3 degrees and distances within a
 /// factor of 10; by less than 1e-8 of it for needles, observers on or next to a corner, an edge, the face or the
-/// plane, neighbouring floats. The factor 2 is needed only where distances from the observer differ by 1e30.
+/// plane, neighbouring floats. The factor 2 is needed only where distances from the observer differ by 1e30. NaN or
+/// infinity if a coordinate is not finite.
 pub fn triangle_gap(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let [a, b, c] = sorted([a, b, c]);
     let squares = [a, b, c].map(DVec3::length_squared);
@@ -128,9 +129,13 @@ pub fn triangle_gap(a: DVec3, b: DVec3, c: DVec3) -> f64 {
 /// About where in the triangle the gap is largest: the weights of the corners, none negative, sum 1 but for
 /// rounding.
 ///
-/// To insert a point there, not to prove anything: an approximation, best where the gap is well defined.
+/// To insert a point there, not to prove anything: an approximation, best where the gap is well defined. A third each
+/// where a coordinate is not finite.
 pub fn triangle_gap_place(a: DVec3, b: DVec3, c: DVec3) -> [f64; 3] {
     let mut corners = [a, b, c];
+    if !corners.iter().all(|corner| corner.is_finite()) {
+        return [1.0 / 3.0; 3];
+    }
     let largest = corners.iter().fold(0.0, |largest: f64, corner| {
         largest.max(corner.abs().max_element())
     });

@@ -72,6 +72,34 @@ pub enum WriteError {
         /// The least that can be written.
         limit: f64,
     },
+    /// Numbers at vertices that are not one for each.
+    #[error(
+        "the photosurface \"{name}\" has {found} numbers \"{attribute}\", expected one for each of {vertices} vertices"
+    )]
+    Attribute {
+        /// Which photosurface.
+        name: String,
+        /// Which numbers, as a file calls them.
+        attribute: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// Steps that cannot be morph targets of one mesh.
+    #[error(
+        "step {step} of \"{name}\" has other triangles or vectors than the first one, expected the same at all steps, as \
+         `PlacedScene::morphing` makes them"
+    )]
+    Morph {
+        /// Which part.
+        name: String,
+        /// Which step, from 0.
+        step: usize,
+    },
+    /// A frame rate that no animation has.
+    #[error("{0} frames per second, expected a number from 0.001 to 1000")]
+    FramesPerSecond(f64),
     /// More bytes than the format can say.
     #[error(
         "the file would have at least {bytes} bytes, {format} can have at most {limit}; write the steps to files \

@@ -22,13 +22,13 @@ pub struct Export<'a> {
 pub enum Playback {
     /// Each photosurface is a node, which is there during its frame: its scale is 1, and 0 else.
     Frames {
-        /// Steps in a second, > 0.
+        /// Steps in a second, from 0.001 to 1000.
         frames_per_second: f64,
     },
     /// Each part is one node whose mesh has a morph target for every step after the first. All steps must have the
     /// same triangles, part by part, as [`PlacedScene::morphing`](crate::PlacedScene::morphing) makes them.
     Morph {
-        /// Steps in a second, > 0.
+        /// Steps in a second, from 0.001 to 1000.
         frames_per_second: f64,
     },
 }

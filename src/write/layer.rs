@@ -53,6 +53,17 @@ pub(super) enum Numbers {
     Any,
 }
 
+impl Values<'_> {
+    /// How many there are; `None` where there are as many as are asked for.
+    fn count(&self) -> Option<usize> {
+        match self {
+            Self::Known(values) => Some(values.len()),
+            Self::One => None,
+            Self::AtRest(positions) | Self::Axis(positions, _) => Some(positions.len()),
+        }
+    }
+}
+
 impl Scalar<'_> {
     /// Whether `f32` holds all of them, none too large and none too small, as those of so many vertices.
     pub(super) fn is_single(&self, vertices: usize) -> bool {
@@ -114,7 +125,7 @@ impl<'a> Layer<'a> {
     ///
     /// # Errors
     ///
-    /// A number that the file cannot hold.
+    /// Numbers that are not one for each vertex, as those of a photosurface that has none, or one that the file cannot hold.
     pub(super) fn scalars(
         &self,
         asked_for: Attributes,
@@ -122,7 +133,15 @@ impl<'a> Layer<'a> {
     ) -> Result<Vec<Scalar<'a>>, WriteError> {
         let positions = self.mesh.positions();
         let mut scalars = vec![];
-        let mut add = |name, words, values| {
+        let mut add = |name, words, values: Values<'a>| {
+            if let Some(found) = values.count().filter(|&found| found != positions.len()) {
+                return Err(WriteError::Attribute {
+                    name: self.name.to_owned(),
+                    attribute: name,
+                    found,
+                    vertices: positions.len(),
+                });
+            }
             let scalar = Scalar { name, values };
             match first_beyond_f32(positions.len(), |vertex| scalar.at(vertex)) {
                 Some(vertex) if numbers == Numbers::Any => {
@@ -152,7 +171,8 @@ impl<'a> Layer<'a> {
             }
         };
         let own = |of: fn(&VertexData) -> Option<&Vec<f64>>| {
-            Some(Values::Known(of(self.vertex_data?)?.as_slice()))
+            let data = self.vertex_data?;
+            Some(Values::Known(of(data).map_or(&[], Vec::as_slice)))
         };
         if asked_for.doppler {
             let factors = own(|data| data.doppler_factors.as_ref());
@@ -168,10 +188,10 @@ impl<'a> Layer<'a> {
             add("emission_time", "the emission time", times)?;
         }
         if asked_for.rest_position {
-            let places = self
-                .vertex_data
-                .and_then(|data| data.rest_positions.as_ref());
-            let places = places.map_or(positions, Vec::as_slice);
+            let places = match self.vertex_data {
+                Some(data) => data.rest_positions.as_deref().unwrap_or_default(),
+                None => positions,
+            };
             for (axis, name) in ["rest_x", "rest_y", "rest_z"].into_iter().enumerate() {
                 add(name, "the place at rest", Values::Axis(places, axis))?;
             }

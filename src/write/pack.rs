@@ -45,7 +45,9 @@ impl Packing {
             .first()
             .ok_or_else(|| WriteError::Empty(name.to_owned()))?;
         let own = bounds.into_iter().fold(first, joined);
-        let (low, high) = around.unwrap_or(own);
+        // A box that is none, or not around everything, would make numbers that are none.
+        let around = around.filter(|(low, high)| low.is_finite() && high.is_finite());
+        let (low, high) = around.map_or(own, |around| joined(own, around));
         let half_extent = (0.5 * high - 0.5 * low).max_element();
         if half_extent > 0.0 && half_extent < f64::from(f32::MIN_POSITIVE) {
             return Err(WriteError::TooSmall {

@@ -56,34 +56,34 @@ fn least_gltf(parts: &[&Part], steps: u64, scalars: u64) -> u64 {
         true => bytes as u64,
         false => 0,
     };
-    let mut bytes = 0;
+    let (mut of_step, mut of_all) = (0_u64, 0_u64);
     for part in parts {
         let mesh = part.mesh();
         let vectors = 12 + mesh.normals().map_or(0, |_| 12) + mesh.tangents().map_or(0, |_| 16);
         let of_vertex = vectors + 4 * scalars;
-        bytes += steps * of_vertex * mesh.positions().len() as u64;
-        bytes += once(
+        of_step += of_vertex * mesh.positions().len() as u64;
+        of_all += once(
             mesh.triangles().as_ptr() as usize,
             size_of_val(mesh.triangles()),
         );
         for set in mesh.texture_coordinates() {
-            bytes += once(set.as_ptr() as usize, size_of_val(&set[..]));
+            of_all += once(set.as_ptr() as usize, size_of_val(&set[..]));
         }
         if let Some(colors) = mesh.colors() {
-            bytes += once(colors.as_ptr() as usize, 4 * colors.len());
+            of_all += once(colors.as_ptr() as usize, 4 * colors.len());
         }
         let textures = part.material.iter().flat_map(|m| m.textures());
         for image in textures.flat_map(|texture| texture.images()) {
-            bytes += once(image.bytes().as_ptr() as usize, image.bytes().len());
+            of_all += once(image.bytes().as_ptr() as usize, image.bytes().len());
         }
     }
-    bytes
+    of_step.saturating_mul(steps).saturating_add(of_all)
 }
 
 fn least_ply(parts: &[&Part], steps: u64, scalars: u64) -> Result<u64, WriteError> {
     let count = |of: fn(&Mesh) -> usize| {
         let each = parts.iter().map(|part| of(part.mesh()) as u64);
-        steps * each.sum::<u64>()
+        steps.saturating_mul(each.sum())
     };
     let vertices = count(|mesh| mesh.positions().len());
     if vertices > u64::from(u32::MAX) {
@@ -155,5 +155,10 @@ mod tests {
         assert!(Format::Glb.least_size(&placed, most as usize + 1).is_err());
         assert!(Format::Gltf.least_size(&placed, 34_000).is_ok());
         assert!(Format::Ply.least_size(&placed, 800_000).is_err());
+        assert_eq!(
+            Format::Gltf.least_size(&placed, usize::MAX).unwrap(),
+            u64::MAX
+        );
+        assert!(Format::Ply.least_size(&placed, usize::MAX).is_err());
     }
 }

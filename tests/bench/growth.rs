@@ -139,7 +139,7 @@ fn picture(placed: &PlacedScene) -> Duration {
             vertical_fov_deg: 60.0,
         };
         let camera = Camera::new(size, projection, DVec3::NEG_Z).expect("a fair camera");
-        let moment = placed.scene().moment(0);
+        let moment = placed.scene().moment(0).expect("a step");
         let options = PictureOptions {
             samples: 1,
             ..PictureOptions::default()

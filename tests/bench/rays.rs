@@ -90,7 +90,7 @@ impl Sight {
 
     fn take(&self, samples: u32) {
         let scene = self.placed.scene();
-        let moment = scene.moment(0);
+        let moment = scene.moment(0).expect("a step");
         let viewpoint = Viewpoint::Observer(&moment);
         let options = PictureOptions {
             samples,

@@ -20,6 +20,7 @@ mod physics {
     mod lorentz;
     mod moments;
     mod moving_objects;
+    mod odd_numbers;
     mod penrose_terrell;
     mod properties;
 }

@@ -7,9 +7,12 @@ use crate::common::command::{Workplace, glb_json};
 use crate::common::glb::Glb;
 use crate::common::refining::{Sighting, model, plate};
 use photosurface::{
-    DAffine3, DVec3, Event, Lorentz, Mesh, Object, Observer, PhotosurfaceMap, PlacedScene,
-    Precision, Scene, Source, SurfaceOptions, Tolerance, Velocity, View, WorldLine, WriteError,
-    abandon_writes, destination, load_models, write_whole,
+    Appearance, Attributes, Camera, Color, DAffine3, DQuat, DVec2, DVec3, Event, Export, Lorentz,
+    MAX_RAPIDITY, Mesh, Model, Object, Observer, Photosurface, PhotosurfaceMap, Picture,
+    PictureOptions, PictureSize, PlacedScene, PlacedSceneError, Playback, Precision, Projection,
+    Rotation, Scene, Scenery, Shape, Source, Strokes, SurfaceOptions, Tolerance, Velocity, View,
+    Viewpoint, WorldLine, WriteError, abandon_writes, destination, even_steps, load_models,
+    write_glb, write_ply, write_whole,
 };
 use serde_json::json;
 
@@ -551,4 +554,281 @@ fn a_stage_is_made_of_what_fits_or_not_at_all() {
         odd.contains("part \"part0\" of object \"triangle\""),
         "{odd}"
     );
+}
+
+fn ball() -> Scene {
+    let shape = Shape::sphere(1.0).unwrap();
+    let source = Source::Shape(shape, Appearance::default());
+    Scene::new(Observer::default(), vec![Object::new("ball", source)]).unwrap()
+}
+
+/// Of an object with a shape and a model without parts a panic was made; of one with the model of a coarser shape, a
+/// certificate for facets that were not there.
+#[test]
+fn the_model_of_a_shape_is_that_of_the_shape() {
+    let of = |model: Model| PlacedScene::new(ball(), vec![model]).map(|_| ());
+    let shape = |radius: f64, resolution: u32| {
+        let shape = Shape::sphere(radius).unwrap();
+        let shape = shape.with_resolution(resolution).unwrap();
+        shape.model(&Appearance::default()).unwrap()
+    };
+    let (models, _) = load_models(&ball(), "".as_ref()).unwrap();
+    assert_eq!(of(models[0].clone()), Ok(()));
+    // Looks and names are the caller's.
+    let mut renamed = models[0].clone();
+    renamed.parts[0].name = "mine".to_owned();
+    renamed.parts[0].material = None;
+    assert_eq!(of(renamed), Ok(()));
+    for other in [Model::default(), shape(1.0, 3), shape(1.5, 48)] {
+        let object = "ball".to_owned();
+        assert_eq!(of(other), Err(PlacedSceneError::Shape { object }));
+    }
+}
+
+/// A composed velocity may be twice as fast as any that is given: two of those ended in a failed assertion, and without
+/// assertions in a relative velocity whose rapidity and `gamma` were not of each other.
+#[test]
+fn composed_velocities_never_leave_the_range_of_numbers() {
+    let of =
+        |rapidity: f64, direction: DVec3| Velocity::from_rapidity(rapidity, direction).unwrap();
+    let there = of(MAX_RAPIDITY, DVec3::X);
+    let back = of(MAX_RAPIDITY, DVec3::new(-1.0, 0.5, 0.0));
+    for other in [there.reversed(), back] {
+        let fast = Lorentz::between(other, there);
+        let mut whole = fast;
+        for _ in 0..5 {
+            whole = whole.then(&fast);
+            let velocity = whole.boost_velocity();
+            assert!((2.0 * MAX_RAPIDITY - velocity.rapidity()).abs() < 1e-6 * MAX_RAPIDITY);
+            assert!((velocity.stretch().ln() - velocity.rapidity()).abs() < 1e-9);
+            assert!(velocity.gamma().is_finite());
+            let undone = whole.then(&whole.inverse()).boost_velocity();
+            assert!(undone.rapidity() <= 2.0 * MAX_RAPIDITY * (1.0 + 1e-9));
+        }
+        // A scene takes none that is faster than may be given.
+        let observer = Observer {
+            velocity: whole.boost_velocity(),
+            ..Observer::default()
+        };
+        let scene = ball().with_observer(observer);
+        let (models, _) = load_models(&scene, "".as_ref()).unwrap();
+        let refused = PlacedScene::new(scene, models).unwrap_err().to_string();
+        assert!(
+            refused.contains("the rapidity of the observer is 700, expected at most 350"),
+            "{refused}"
+        );
+    }
+}
+
+/// Axes could be turned by no rotation at all, of which the next composition made a failed assertion.
+#[test]
+fn axes_are_turned_by_rotations_alone() {
+    for odd in [0.0, 1e-200, 2.0, 1e200, f64::INFINITY, f64::NAN] {
+        assert!(Rotation::new(DQuat::IDENTITY * odd).is_err(), "{odd}");
+    }
+    let turn = Rotation::new(DQuat::from_rotation_y(0.5)).unwrap();
+    let moment = ball().moment(0).unwrap().turned(turn);
+    assert!((moment.scene_to_observer().rotation().length() - 1.0).abs() < 1e-15);
+    assert!(ball().moment(1).is_none());
+}
+
+/// Photosurfaces may be anyone's: of numbers that are not one for each vertex, of steps with other triangles and of a
+/// step beyond the last the writers made a panic, of a box around nothing and of no frames in a second files of NaN, and
+/// of a photosurface without the numbers that others have, numbers of something at rest.
+#[test]
+fn what_does_not_fit_together_is_not_written() {
+    let scene = ball().with_steps(vec![0.0, 1.0]).unwrap();
+    let (models, _) = load_models(&scene, "".as_ref()).unwrap();
+    let placed = PlacedScene::new(scene, models).unwrap();
+    let wanted = SurfaceOptions {
+        attributes: Attributes {
+            doppler: true,
+            rest_position: true,
+            ..Attributes::default()
+        },
+        ..SurfaceOptions::default()
+    };
+    let facts = placed.facts();
+    let write = |photosurfaces: &[Photosurface], playback: Option<Playback>| {
+        let export = Export {
+            scene: &facts,
+            marker: None,
+            photosurfaces,
+            playback,
+        };
+        let (mut glb, mut ply) = (vec![], vec![]);
+        let glb = write_glb(&export, &mut glb).map(|()| glb);
+        let ply = write_ply(&export, &mut ply).map(|()| ply);
+        (glb, ply)
+    };
+    let surface = placed.photosurfaces(0, wanted).unwrap().next().unwrap();
+    let (fine, _) = write(std::slice::from_ref(&surface), None);
+    let fine = fine.unwrap();
+
+    let mut short = surface.clone();
+    short.vertex_data.rest_positions.as_mut().unwrap().pop();
+    let mut without = surface.clone();
+    without.vertex_data.doppler_factors = None;
+    for (others, attribute) in [
+        (vec![short], "rest_x"),
+        (vec![surface.clone(), without], "doppler"),
+    ] {
+        let (glb, ply) = write(&others, None);
+        for error in [glb.unwrap_err(), ply.unwrap_err()] {
+            assert!(error.to_string().contains(attribute), "{error}");
+            assert!(matches!(error, WriteError::Attribute { .. }), "{error}");
+        }
+    }
+
+    let mut late = surface.clone();
+    late.facts.step = usize::MAX;
+    let (late, _) = write(&[late], None);
+    let step = |error: &WriteError| {
+        matches!(
+            error,
+            WriteError::PlacedScene(PlacedSceneError::Step { .. })
+        )
+    };
+    assert!(step(&late.unwrap_err()));
+
+    for odd in [DVec3::NAN, DVec3::INFINITY, DVec3::ZERO] {
+        let mut boxed = surface.clone();
+        boxed.around = (odd, odd);
+        let (boxed, _) = write(&[boxed], None);
+        assert!(boxed.unwrap() == fine, "{odd}");
+    }
+
+    let morphing: Vec<Photosurface> = placed.morphing(wanted).flatten().collect();
+    for frames_per_second in [0.0, -1.0, 1e-300, 1e300, f64::INFINITY, f64::NAN] {
+        for playback in [
+            Playback::Frames { frames_per_second },
+            Playback::Morph { frames_per_second },
+        ] {
+            let (glb, _) = write(&morphing, Some(playback));
+            assert!(matches!(glb, Err(WriteError::FramesPerSecond(_))));
+        }
+    }
+    let playback = Playback::Morph {
+        frames_per_second: 24.0,
+    };
+    assert!(write(&morphing, Some(playback)).0.is_ok());
+    let mut other = morphing.clone();
+    other[1].mesh = cube();
+    let (other, _) = write(&other, Some(playback));
+    assert!(matches!(other, Err(WriteError::Morph { step: 1, .. })));
+}
+
+fn cube() -> Mesh {
+    let cube = Shape::cuboid([1.0; 3]).unwrap();
+    let model = cube.model(&Appearance::default()).unwrap();
+    model.parts[0].mesh().clone()
+}
+
+/// A picture that was pasted far beside another one ended in a panic; so did 65,536 rays along each side of a pixel,
+/// after some hours.
+#[test]
+fn pictures_take_any_numbers() {
+    let odd = [
+        0.0,
+        -1.0,
+        5e-324,
+        1e300,
+        f64::MAX,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NAN,
+    ];
+    let size = PictureSize::new(4, 3).unwrap();
+    let white = Color([255; 3]);
+    let mut picture = Picture::filled(size, white);
+    for x in [0, 3, 4, 9, u32::MAX] {
+        for y in [0, 2, 3, u32::MAX] {
+            picture.paste(&Picture::filled(size, white), x, y);
+        }
+    }
+    for width_px in odd {
+        for x in odd {
+            let lines = vec![[DVec2::new(x, 1.0), DVec2::new(width_px, x)]];
+            picture.draw(&Strokes {
+                lines,
+                color: white,
+                width_px,
+            });
+            picture.write("a", DVec2::new(x, 2.0), width_px, white);
+        }
+    }
+    let mut scenery = Scenery::new();
+    let (scene, (models, _)) = (ball(), load_models(&ball(), "".as_ref()).unwrap());
+    scenery.add_at_rest(&scene.objects()[0], &models[0].parts[0]);
+    let part = &models[0].parts[0];
+    for odd in odd {
+        scenery.add_plain(
+            &part
+                .clone()
+                .transformed(&DAffine3::from_scale(DVec3::new(odd, 1.0, 1.0))),
+        );
+        scenery.add_ghost(
+            part.mesh()
+                .clone()
+                .transformed(&DAffine3::from_translation(DVec3::X * odd)),
+            white,
+        );
+    }
+    let views = [0.0, 5e-324, 1e-300, 179.999_999_999_999, 180.0, f64::NAN];
+    let projections = views.map(|vertical_fov_deg| Projection::Pinhole { vertical_fov_deg });
+    let cameras = projections.into_iter().chain([Projection::FullSky]);
+    let cameras: Vec<Camera> = cameras
+        .filter_map(|projection| Camera::new(size, projection, DVec3::NEG_Z).ok())
+        .collect();
+    assert_eq!(cameras.len(), 4);
+    for camera in &cameras {
+        for x in odd {
+            assert!(
+                camera
+                    .place(DVec3::new(x, 1.0, -1.0))
+                    .is_none_or(DVec2::is_finite)
+            );
+            let moments = [
+                ball().observer().moment(x),
+                ball().moment(0).unwrap().coasted(x),
+            ];
+            let eyes = [
+                Viewpoint::Outside(DVec3::new(x, 0.0, 9.0)),
+                Viewpoint::Observer(&moments[0]),
+                Viewpoint::Observer(&moments[1]),
+            ];
+            for eye in eyes {
+                let options = PictureOptions {
+                    samples: 0,
+                    wireframe: Some(white),
+                    ..PictureOptions::default()
+                };
+                let mut picture = scenery.picture(camera, eye, options, &|| ());
+                let lines = vec![[DVec3::new(x, 0.0, 0.0), DVec3::Y]];
+                let strokes = Strokes {
+                    lines,
+                    color: white,
+                    width_px: 1.0,
+                };
+                scenery.draw(&mut picture, camera, eye, &[strokes]);
+            }
+        }
+    }
+    let options = PictureOptions {
+        samples: u32::MAX,
+        ..PictureOptions::default()
+    };
+    let one = PictureSize::new(1, 1).unwrap();
+    let camera = Camera::new(one, Projection::FullSky, DVec3::NEG_Z).unwrap();
+    let viewpoint = Viewpoint::Outside(DVec3::Z * 9.0);
+    Scenery::new().picture(&camera, viewpoint, options, &|| ());
+}
+
+/// Steps between ends whose difference is beyond `f64` were infinite.
+#[test]
+fn even_steps_are_finite() {
+    let steps = even_steps(-f64::MAX, f64::MAX, 5).unwrap();
+    for (step, part) in steps.into_iter().zip([-1.0, -0.5, 0.0, 0.5, 1.0]) {
+        assert!((step / f64::MAX - part).abs() <= f64::EPSILON, "{step}");
+    }
 }

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use super::document::{Document, Use};
 use super::file::GltfFile;
 use super::tracks::{Keys, Tracks};
+use crate::mesh::Mesh;
 use crate::pipeline::{Facts, Photosurface, step_label};
 use crate::write::WriteError;
 use crate::write::layer::Layer;
@@ -51,12 +52,23 @@ impl GltfFile<'_> {
     ///
     /// # Errors
     ///
-    /// No photosurfaces, a mesh without triangles, a number that `f32` cannot hold, or the writer fails.
+    /// No photosurfaces, a mesh without triangles, steps of different triangles or kinds of vectors, a number that `f32`
+    /// cannot hold, or the writer fails.
     pub fn add_morphing(&mut self, steps: &[Photosurface]) -> Result<(), WriteError> {
         let Some(first) = steps.first() else {
             return Err(WriteError::Empty("of no step".to_owned()));
         };
         let name = name_of_part(first);
+        self.check_step(first)?;
+        if let Some(other) = steps
+            .iter()
+            .find(|step| !can_morph(&first.mesh, &step.mesh))
+        {
+            return Err(WriteError::Morph {
+                name: name.to_owned(),
+                step: other.facts.step,
+            });
+        }
         let meshes: Vec<_> = steps.iter().map(|step| &step.mesh).collect();
         // What the source says is that of all frames.
         let frame = |step: &Photosurface| Facts {
@@ -161,6 +173,14 @@ impl GltfFile<'_> {
             extras: None,
         });
     }
+}
+
+/// Whether one mesh becomes the other by moving its vertices.
+fn can_morph(from: &Mesh, to: &Mesh) -> bool {
+    from.positions().len() == to.positions().len()
+        && from.shared_triangles() == to.shared_triangles()
+        && from.normals().is_some() == to.normals().is_some()
+        && from.tangents().is_some() == to.tangents().is_some()
 }
 
 fn key_frames<const N: usize>(

@@ -7,6 +7,7 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::io::Write;
+use std::ops::RangeInclusive;
 
 use glam::{DVec3, DVec4, Vec2};
 use gltf::json::validation::Checked;
@@ -17,17 +18,20 @@ use super::document::{Document, Use};
 use super::materials::Materials;
 use crate::material::Part;
 use crate::mesh::Mesh;
-use crate::pipeline::{Photosurface, SceneFacts, step_label};
+use crate::pipeline::{Photosurface, PlacedSceneError, SceneFacts, step_label};
 use crate::scene::Attributes;
 use crate::write::layer::{Layer, Numbers, Scalar};
 use crate::write::pack::{Bounds, Packing};
 use crate::write::{Export, GltfOutput, Playback, WriteError};
 
+/// Steps in a second that key frames in `f32` can tell apart, also after a hundred thousand of them.
+const FRAMES_PER_SECOND: RangeInclusive<f64> = 1e-3..=1e3;
+
 /// Writes one GLB.
 ///
 /// # Errors
 ///
-/// A mesh without triangles, a number that `f32` cannot hold, more than 4 GiB, or the writer fails.
+/// A mesh without triangles, a number that `f32` cannot hold, more than 4 GiB, what [`GltfFile`] refuses, or the writer fails.
 pub fn write_glb(export: &Export<'_>, mut writer: impl Write) -> Result<(), WriteError> {
     write(export, GltfOutput::from_memory(&mut writer))
 }
@@ -88,7 +92,7 @@ impl<'a> GltfFile<'a> {
     ///
     /// # Errors
     ///
-    /// The writer fails.
+    /// A frame rate outside 0.001 to 1000, a marker that `f32` cannot hold, or the writer fails.
     pub fn new(
         output: GltfOutput<'a>,
         scene: &SceneFacts,
@@ -96,6 +100,11 @@ impl<'a> GltfFile<'a> {
         attributes: Attributes,
         playback: Option<Playback>,
     ) -> Result<Self, WriteError> {
+        if let Some(rate) = playback.map(Playback::frames_per_second)
+            && !FRAMES_PER_SECOND.contains(&rate)
+        {
+            return Err(WriteError::FramesPerSecond(rate));
+        }
         let mut file = Self {
             document: Document::new(output),
             scene: scene.clone(),
@@ -110,17 +119,28 @@ impl<'a> GltfFile<'a> {
         Ok(file)
     }
 
-    /// Adds a photosurface, which must have the attributes of the file.
+    /// Adds a photosurface, which must have the attributes of the file and be of a step of the scene.
     ///
     /// # Errors
     ///
-    /// A mesh without triangles, a number that `f32` cannot hold, or the writer fails.
+    /// A mesh without triangles, an attribute that does not have one value a vertex, a step that the scene does not have, a
+    /// number that `f32` cannot hold, or the writer fails.
     pub fn add(&mut self, photosurface: &Photosurface) -> Result<(), WriteError> {
+        self.check_step(photosurface)?;
         let node = self.add_layer(&Layer::from(photosurface))?;
         if let Some(Playback::Frames { frames_per_second }) = self.playback {
             self.show_during_its_frame(node, photosurface.facts.step, frames_per_second)?;
         }
         Ok(())
+    }
+
+    /// Whether the scene has the step of a photosurface.
+    pub(super) fn check_step(&self, photosurface: &Photosurface) -> Result<(), WriteError> {
+        let (step, steps) = (photosurface.facts.step, self.scene.steps.len());
+        match step < steps {
+            true => Ok(()),
+            false => Err(PlacedSceneError::Step { step, steps }.into()),
+        }
     }
 
     pub(super) fn playback(&self) -> Option<Playback> {

@@ -120,6 +120,9 @@ pub(super) struct InPlace<'a> {
     room: Option<u64>,
 }
 
+/// No more room than this is left for the JSON of meshes, however many are expected: half of all that a GLB can have.
+const MOST_ROOM: f64 = (1_u64 << 31) as f64;
+
 impl<'a> InPlace<'a> {
     pub(super) fn new(file: &'a mut File, expected: usize) -> Self {
         Self {
@@ -142,7 +145,8 @@ impl<'a> InPlace<'a> {
             (0, _) => self.reserve.for_each as f64,
             (meshes, bytes) => ROOM_TO_GROW * bytes as f64 / meshes as f64,
         };
-        self.reserve.once + (for_each * self.expected as f64) as u64
+        let of_all = (for_each * self.expected as f64).min(MOST_ROOM);
+        self.reserve.once + of_all as u64
     }
 
     /// Puts everything in front of the data, of which there are so many bytes.

@@ -58,7 +58,7 @@ fn one_mesh_is_within_the_tolerance_at_every_step() {
                 surface.facts.name
             );
             assert_eq!(surface.mesh.triangles(), steps[0].mesh.triangles());
-            let view = View::new(&placed.scene().moment(step), &object.world_line());
+            let view = View::new(&placed.scene().moment(step).unwrap(), &object.world_line());
             let rest = surface
                 .vertex_data
                 .rest_positions
@@ -325,7 +325,7 @@ fn attributes_are_there_when_asked_for() {
             .objects()
             .iter()
             .find(|object| object.name == surface.facts.object);
-        let moment = placed.scene().moment(surface.facts.step);
+        let moment = placed.scene().moment(surface.facts.step).unwrap();
         let view = View::new(&moment, &object.unwrap().world_line());
         let [x, y, z] = ["_REST_X", "_REST_Y", "_REST_Z"].map(numbers);
         let (factors, times) = (numbers("_DOPPLER"), numbers("_EMISSION_TIME"));

@@ -2,8 +2,8 @@
 
 use photosurface::{
     Camera, Color, DAffine3, DMat3, DQuat, DVec3, Event, Lorentz, Moment, Picture, PictureOptions,
-    PictureSize, PlacedScene, Projection, Scene, Scenery, SurfaceOptions, Tolerance, Velocity,
-    View, Viewpoint, WorldLine, load_models,
+    PictureSize, PlacedScene, Projection, Rotation, Scene, Scenery, SurfaceOptions, Tolerance,
+    Velocity, View, Viewpoint, WorldLine, load_models,
 };
 use serde_json::json;
 
@@ -15,6 +15,10 @@ const ROTATION: f64 = 8.0 * f64::EPSILON;
 
 fn rapidity(rapidity: f64, direction: DVec3) -> Velocity {
     Velocity::from_rapidity(rapidity, direction).expect("not too fast")
+}
+
+fn rotation(turn: DQuat) -> Rotation {
+    Rotation::new(turn).expect("a unit quaternion")
 }
 
 fn turns() -> [DQuat; 4] {
@@ -48,7 +52,7 @@ fn turned_axes_see_the_photosurface_turned() {
         let boosted = observer.moment(1.5);
         let plain = View::new(&boosted, &object);
         for turn in turns() {
-            let view = View::new(&boosted.turned(turn), &object);
+            let view = View::new(&boosted.turned(rotation(turn)), &object);
             assert_eq!(view.observer_rest(), plain.observer_rest());
             assert_eq!(view.relative_velocity(), plain.relative_velocity());
             let back = DMat3::from_quat(turn).transpose();
@@ -114,7 +118,7 @@ fn turned_observers_see_what_the_oracle_sees() {
             velocity: by,
         };
         let view = View::new(
-            &Moment::new(event, Lorentz::boost(own)).turned(turn),
+            &Moment::new(event, Lorentz::boost(own)).turned(rotation(turn)),
             &object,
         );
         let oracle = Oracle::new(place, &by, event, &own).turned(turn);
@@ -201,7 +205,7 @@ fn rays_agree_with_the_turned_photosurface() {
         }
     }
     for turn in turns() {
-        let moment = placed.scene().moment(0).turned(turn);
+        let moment = placed.scene().moment(0).unwrap().turned(rotation(turn));
         let back = DAffine3::from_quat(turn.inverse());
         let mut turned = Scenery::new();
         for (surface, object) in placed

@@ -59,7 +59,7 @@ fn by_meshes(placed: &PlacedScene, camera: &Camera, wanted: SurfaceOptions) -> (
 
 fn take(placed: &PlacedScene, scenery: &Scenery, camera: &Camera) -> Picture {
     assert!(scenery.textures().missing().is_empty());
-    let moment = placed.scene().moment(0);
+    let moment = placed.scene().moment(0).unwrap();
     let viewpoint = Viewpoint::Observer(&moment);
     scenery.picture(camera, viewpoint, BARE, &|| ())
 }

@@ -59,7 +59,7 @@ fn take(case: &Case, placed: PlacedScene) {
         false => Some(at_rest(&placed)),
     };
     for step in 0..placed.scene().steps().len() {
-        let moment = placed.scene().moment(step);
+        let moment = placed.scene().moment(step).expect("a step");
         let viewpoint = match from {
             Some(place) => Viewpoint::Outside(place.into()),
             None => Viewpoint::Observer(&moment),

@@ -1,4 +1,4 @@
-//! How an object is turned.
+//! How things and axes are turned.
 
 use glam::DQuat;
 use serde::{Deserialize, Serialize};
