@@ -192,10 +192,10 @@ mod tests {
         assert_eq!(
             lines(&notes),
             [
-                "3 meshes, the first mesh \"m0\": _A not carried over",
+                "3 meshes, the first mesh \"m0\": _A not copied",
                 "2 meshes, the first mesh \"m0\": 5 colours outside 0 to 1 clamped",
                 "node \"a\" is not visible: skipped, and so 2 more nodes",
-                "mesh \"m1\": _B not carried over",
+                "mesh \"m1\": _B not copied",
                 "meshes[3].primitives[0]: has no triangles, skipped",
                 "meshes[4]: has no triangles, skipped",
             ]

@@ -149,8 +149,11 @@ pub(super) fn ray_costs(
         progress,
     };
     let finer = finest.saturating_mul(REFERENCE_FINER);
-    let [first, second] = REFERENCES.map(|number| studio.reference(finer, number));
-    let references = [first?, second?];
+    let [first, second] = REFERENCES;
+    let references = [
+        studio.reference(finer, first)?,
+        studio.reference(finer, second)?,
+    ];
     let pictures = Pictures {
         count: steps,
         width: size.width(),

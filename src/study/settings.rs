@@ -40,7 +40,7 @@ impl Default for CostSettings {
 }
 
 impl CostSettings {
-    /// How many runs, measurements and pictures [`CostStudy::new`] does.
+    /// How many runs, measurements and pictures [`CostStudy::new`](super::CostStudy::new) does.
     pub fn pieces(&self) -> usize {
         let repeats = self.repeats.get();
         let rays = self.rays.as_ref();

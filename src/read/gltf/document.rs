@@ -251,7 +251,7 @@ fn check_references(root: &Root) -> Result<(), ReadError> {
         let all_zeros = path.as_str().starts_with("accessors[")
             && path.as_str().ends_with("].bufferView")
             && error == Invalid::Missing;
-        // A primitive without positions is passed over.
+        // A primitive without positions is ignored.
         let no_positions =
             path.as_str().ends_with(".attributes[\"POSITION\"]") && error == Invalid::Missing;
         if !all_zeros && !no_positions {
@@ -324,7 +324,7 @@ mod tests {
         let wrong = r#"{"asset": {"version": "2.0"}, "nodes": [{}, {"scale": [1, 2, "x"]}]}"#;
         assert_eq!(
             message(wrong),
-            "nodes[1].scale[2]: not as glTF has it: invalid type: string \"x\", expected f64"
+            "nodes[1].scale[2]: not valid glTF: invalid type: string \"x\", expected f64"
         );
         let lost = r#"{"asset": {"version": "2.0"}, "nodes": [{"mesh": 3}]}"#;
         assert_eq!(

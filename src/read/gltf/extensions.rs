@@ -1,4 +1,4 @@
-//! Which extensions of glTF can be passed over, and which make a file unreadable.
+//! Which extensions of glTF can be ignored, and which make a file unreadable.
 //!
 //! Names from the registry at <https://github.com/KhronosGroup/glTF/tree/main/extensions>.
 
@@ -44,7 +44,7 @@ const HARMLESS: [&str; 14] = [
 ];
 
 /// Refuses a file that cannot be read without an extension that is not known here; notes those that are
-/// not carried over with the looks of surfaces.
+/// not copied with the looks of surfaces.
 pub(super) fn check(root: &Root, looks: &Looks, notes: &mut Vec<Note>) -> Result<(), ReadError> {
     let heeded = [QUANTIZATION, INSTANCING, VISIBILITY];
     for name in &looks.required {

@@ -351,7 +351,9 @@ mod tests {
         let texts: Vec<String> = notes.iter().map(Note::to_string).collect();
         assert_eq!(
             texts,
-            ["nodes: 1 matrix taken as affine, whose bottom row is [0, 0, 0, 1] but for 3e-6"]
+            [
+                "nodes: the bottom row of 1 matrix differs from [0, 0, 0, 1] by up to 3e-6 and is ignored"
+            ]
         );
         assert!(message(&row("2e-4")).contains("the bottom row of the matrix is [0.0002, "));
     }

@@ -1,6 +1,6 @@
 //! The statements of an OBJ file: its vertices, and its faces by part.
 //!
-//! What does not bear on the shape is read as leniently as other programs read it, and what is passed over is
+//! What does not bear on the shape is read as leniently as other programs read it, and what is ignored is
 //! counted; positions and the corners of faces have to be right. References are followed when all of the file
 //! is read, since some programs write faces before vertices.
 //!
@@ -83,7 +83,7 @@ impl Names {
     }
 }
 
-/// How often something was passed over or replaced, and the first line with it.
+/// How often something was ignored or replaced, and the first line with it.
 #[derive(Default)]
 struct Oddities(Vec<(&'static str, usize, usize)>);
 
@@ -342,7 +342,7 @@ impl Statements {
         Ok(())
     }
 
-    /// Names what is passed over.
+    /// Names what is ignored.
     pub(super) fn note(&self, notes: &mut Vec<Note>) {
         let count = self.points_and_lines;
         if count > 0 {
@@ -418,7 +418,7 @@ mod tests {
         // The first f is whole: "1 1 1" over two lines.
         assert_eq!(
             message("v 0 0 \\\n 0 # origin \\\nf 1 1\\\n1\nf 2"),
-            "line 5: corner \"2\" asks for v 2, but there are 1 so far"
+            "line 5: corner \"2\" refers to v 2, but only 1 are defined so far"
         );
     }
 
@@ -449,13 +449,13 @@ mod tests {
         assert_eq!(
             notes,
             [
-                "the fourth number of v: passed over once, in line 1",
-                "numbers behind the colour of v: passed over once, in line 3",
-                "a colour of v that is not three finite numbers: passed over once, in line 4",
-                "two numbers behind those of v: passed over once, in line 5",
-                "a vn that is not three finite numbers: passed over 2 times, first in line 6",
-                "a vt that is not one to three finite numbers: passed over 2 times, first in line 8",
-                "a vt or vn of a corner that is not there: passed over 3 times, first in line 10",
+                "the fourth number of v: ignored once, in line 1",
+                "numbers behind the colour of v: ignored once, in line 3",
+                "a colour of v that is not three finite numbers: ignored once, in line 4",
+                "two numbers behind those of v: ignored once, in line 5",
+                "a vn that is not three finite numbers: ignored 2 times, first in line 6",
+                "a vt that is not one to three finite numbers: ignored 2 times, first in line 8",
+                "a vt or vn of a corner that is not there: ignored 3 times, first in line 10",
                 "vertex colours: taken as sRGB, made linear",
             ]
         );
@@ -507,7 +507,7 @@ mod tests {
         );
         assert_eq!(
             message("v 0 0 0\nf 1 1 -2"),
-            "line 2: corner \"-2\" asks for v -2, but there are 1 so far"
+            "line 2: corner \"-2\" refers to v -2, but only 1 are defined so far"
         );
         assert!(message("v 0 0 0\nf 0/1 1 1").contains("asks for v 0"));
         assert!(message("f 1/1/1/1 1 1").contains("expected v, v/vt, v//vn or v/vt/vn"));

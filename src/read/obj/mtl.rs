@@ -449,7 +449,7 @@ mod tests {
         assert!(notes[0].starts_with("image \"a.png\" dropped"));
         assert_eq!(
             notes[1],
-            "material \"a\": Pc, map_d (laid in another way than map_Kd) not carried over"
+            "material \"a\": Pc, map_d (laid in another way than map_Kd) not copied"
         );
     }
 
