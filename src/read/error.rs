@@ -201,7 +201,7 @@ impl ReadError {
 #[non_exhaustive]
 pub enum DocumentProblem {
     /// A reference to something that is not there.
-    #[error("index out of range")]
+    #[error("index out of range, expected that of an existing element")]
     OutOfRange,
     /// A value that glTF does not define.
     #[error("not a value that glTF 2.0 defines")]

@@ -329,7 +329,7 @@ mod tests {
         let lost = r#"{"asset": {"version": "2.0"}, "nodes": [{"mesh": 3}]}"#;
         assert_eq!(
             message(lost),
-            "nodes[0].mesh: refers to something that is not there, expected an index in range"
+            "nodes[0].mesh: index out of range, expected that of an existing element"
         );
         let lost = r#"{"asset": {"version": "2.0"},
             "meshes": [{"primitives": [{"attributes": {"POSITION": 7}}]}]}"#;

@@ -509,7 +509,7 @@ mod tests {
             message("v 0 0 0\nf 1 1 -2"),
             "line 2: corner \"-2\" refers to v -2, but only 1 are defined so far"
         );
-        assert!(message("v 0 0 0\nf 0/1 1 1").contains("asks for v 0"));
+        assert!(message("v 0 0 0\nf 0/1 1 1").contains("refers to v 0"));
         assert!(message("f 1/1/1/1 1 1").contains("expected v, v/vt, v//vn or v/vt/vn"));
         assert!(message("f /1 1 1").contains("corner \"/1\""));
         assert!(message("v 0 0 0\nf -9223372036854775808 1 1").contains("asks for v -92"));
