@@ -51,6 +51,7 @@ mod export {
 
 mod render {
     mod golden;
+    mod one_call;
     mod pictures;
 }
 
