@@ -37,10 +37,12 @@ mod write;
 pub use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4, Vec2, Vec4};
 
 pub use jobs::{
-    Cancelled, DEFAULT_MAX_TRIANGLES, ExportError, ExportLevel, ExportSettings, Exported,
-    FileFindings, Fitted, FittedExport, InputError, LoadError, MAX_SCENE_BYTES, OutputError,
-    Progress, SceneTextError, Tally, check_outputs, export, export_levels, file_for_each_step,
-    levels_of_detail, load_models, scene_from_bytes, stand_off, with_suffix, write_report,
+    Aim, CameraSettings, Cancelled, DEFAULT_MAX_TRIANGLES, EmptyView, ExportError, ExportLevel,
+    ExportSettings, Exported, FieldOfView, FileFindings, Fitted, FittedExport, FramingError, Ghost,
+    Guides, InputError, LoadError, MAX_SCENE_BYTES, OBSERVER_FOV_DEG, OutputError, PictureMethod,
+    PictureSettings, PictureView, Progress, RenderError, Rendered, SceneTextError, Tally, ViewCost,
+    check_outputs, export, export_levels, file_for_each_step, levels_of_detail, load_models,
+    render, render_to_files, scene_from_bytes, stand_off, with_suffix, write_report,
 };
 pub use light_cone::{PhotosurfaceMap, View};
 pub use material::{

@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail, ensure};
 use photosurface::{
-    Camera, CameraError, CostSettings, CostStudy, DVec3, Made, PictureSize, PlacedScene, PlotSize,
-    Projection, RaySettings, StudyError, Tolerance, with_suffix, write_whole,
+    Aim, CameraError, CameraSettings, CostSettings, CostStudy, DVec3, FieldOfView, FramingError,
+    Made, OBSERVER_FOV_DEG, PictureSize, PlacedScene, PlotSize, RaySettings, StudyError, Tolerance,
+    with_suffix, write_whole,
 };
 
 use super::accuracy::tolerance;
 use super::args::{Given, InputArgs, ObserverArgs, count, number, refuse, vector, whole_number};
-use super::camera::{OBSERVER_FOV, fitting_fov, middle_of_sky, rough_places, samples, size};
+use super::camera::{samples, size};
 use super::cost_tables::{csv_of_meshes, csv_of_rays, tables_of};
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, grouped, print, print_if_open};
@@ -265,23 +266,23 @@ impl PictureArgs {
             Some(size) => size,
             None => PictureSize::new(320, 180)?,
         };
-        let places = (0..input.scene.steps().len()).map(|step| rough_places(&placed, step));
-        let projection = Projection::Pinhole {
-            vertical_fov_deg: match self.fov {
-                Some(fov) => fov,
-                None if input.is_mesh && self.look.is_none() => fitting_fov(places.clone(), size),
-                None => OBSERVER_FOV,
+        let camera = CameraSettings {
+            size,
+            field_of_view: match self.fov {
+                Some(fov) => FieldOfView::Degrees(fov),
+                None if input.is_mesh && self.look.is_none() => FieldOfView::Fitting,
+                None => FieldOfView::Degrees(OBSERVER_FOV_DEG),
             },
+            aim: self.look.map_or(Aim::Middle, Aim::Look),
         };
-        let camera = |places: Vec<DVec3>| {
-            let look = self.look.unwrap_or_else(|| middle_of_sky(&places));
-            Camera::new(size, projection, look).map_err(|error| match error {
-                CameraError::FieldOfView(_) => anyhow::Error::new(error).context("--fov"),
-                _ => anyhow::Error::new(error).context("--look"),
-            })
-        };
-        let cameras: anyhow::Result<Vec<_>> = places.map(camera).collect();
-        let mut settings = RaySettings::new(cameras?);
+        let cameras = camera.observer_cameras(&placed);
+        let cameras = cameras.map_err(|error| match error {
+            FramingError::Camera(CameraError::FieldOfView(_)) => {
+                anyhow::Error::new(error).context("--fov")
+            }
+            _ => anyhow::Error::new(error).context("--look"),
+        })?;
+        let mut settings = RaySettings::new(cameras);
         settings.textures = input.textures.clone();
         if !self.pixel_samples.is_empty() {
             settings.samples.clone_from(&self.pixel_samples);
@@ -401,7 +402,7 @@ mod tests {
             assert!(help.contains(&format!("[default: {number}]")), "{help}");
         }
         assert!(
-            help.contains(&format!("[default: {OBSERVER_FOV};")),
+            help.contains(&format!("[default: {OBSERVER_FOV_DEG};")),
             "{help}"
         );
     }

@@ -16,6 +16,5 @@ mod output;
 mod render;
 mod schema;
 mod status;
-mod studio;
 
 pub(crate) use command::run;

@@ -3,8 +3,11 @@
 use std::io::{IsTerminal, stdout};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail, ensure};
-use photosurface::{Picture, PlacedScene, Precision, file_for_each_step, write_whole};
+use anyhow::{Context, ensure};
+use photosurface::{
+    DVec3, EmptyView, Picture, PictureView, PlacedScene, Precision, RenderError, ViewCost,
+    write_whole,
+};
 
 use super::accuracy::AccuracyArgs;
 use super::args::{InputArgs, ObserverArgs};
@@ -12,9 +15,8 @@ use super::camera::{CameraArgs, View};
 use super::guides::GuideArgs;
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print};
-use super::output::{check_destinations, extension, from_first_to_last, is_stdout, progress_bar};
+use super::output::{Bar, check_destinations, extension, from_first_to_last, is_stdout};
 use super::status::Status;
-use super::studio::Studio;
 
 /// Make pictures of what the observer sees, or of photosurfaces from outside
 ///
@@ -61,50 +63,51 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     camera.refuse_unused(method, &args.accuracy.given())?;
     check_output(args.output.as_deref())?;
     let input = Input::read(&args.input, &args.observer, verbosity)?;
-    let kind = match (camera.sheet, camera.view) {
-        (true, _) => "sheet",
-        (_, View::Observer) => "observer",
-        (_, View::Outside) => "outside",
+    let mut settings = camera.settings(method, input.is_mesh);
+    let kind = match settings.view {
+        PictureView::Sheet { .. } => "sheet",
+        PictureView::Observer(_) => "observer",
+        PictureView::Outside { .. } => "outside",
     };
     let path = match &args.output {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}_{kind}.png", input.name)),
     };
     let steps = input.scene.steps().len();
-    if camera.sheet {
-        Studio::sheet_size(camera, steps)?;
-    }
-    let files = match steps {
-        1 => vec![path],
-        _ if camera.sheet || camera.together => vec![path],
-        _ if is_stdout(&path) => bail!(
-            "{steps} steps are as many pictures, they cannot all go to stdout; choose one with --steps"
-        ),
-        _ => file_for_each_step(&path, steps),
-    };
+    settings
+        .picture_size(steps)
+        .context("--sheet: all steps side by side; choose fewer --steps or a smaller --size")?;
+    ensure!(
+        settings.picture_count(steps) == 1 || !is_stdout(&path),
+        "{steps} steps are as many pictures, they cannot all go to stdout; choose one with --steps"
+    );
+    let files = settings.files(&path, steps);
     check_destinations(files.iter().cloned(), &input.files)?;
     let scene = args.accuracy.scene(input.scene);
     let mut placed = PlacedScene::new(scene, input.models)?;
-    let wanted = args.accuracy.wanted(Precision::Double);
-    if camera.shows_meshes(method) && wanted.subdivide {
-        placed = args
-            .accuracy
-            .within_budget(placed, wanted, verbosity)
-            .placed;
+    settings.guides = guides.into();
+    settings.surface_options = args.accuracy.wanted(Precision::Double);
+    if camera.shows_meshes(method) && settings.surface_options.subdivide {
+        let wanted = settings.surface_options;
+        let fitted = args.accuracy.within_budget(placed, wanted, verbosity);
+        placed = fitted.placed;
     }
-    let progress = progress_bar(Studio::rows(camera, steps), "rows", verbosity);
-    let mut studio = Studio::new(
+    let progress = Bar::new(0, "rows", verbosity);
+    let textures = &input.textures;
+    let rendered = photosurface::render(
         &placed,
-        (camera, guides),
-        (method, input.is_mesh),
-        &input.textures,
-        wanted,
-        verbosity,
-        progress.clone(),
+        textures,
+        &settings,
+        &progress,
+        |number, picture| write(&files[number], picture),
     );
-    studio.take_all(|number, picture| write(&files[number], picture))?;
-    progress.finish_and_clear();
-    studio.tell_of_empty_pictures();
+    let rendered = rendered.map_err(|error| match error.downcast::<RenderError>() {
+        Ok(error) => camera.flagged(error),
+        Err(error) => error,
+    })?;
+    progress.finish();
+    tell_of_costs(&rendered.costs, verbosity);
+    tell_of_empty(&rendered.empty, steps, verbosity);
     tell_of_missing(&input.textures, placed.scene(), verbosity);
     if !is_stdout(&files[0]) {
         verbosity.result(format_args!(
@@ -114,10 +117,37 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
             legend(args)
         ));
     }
-    Ok(match args.accuracy.is_kept(&studio.tally, verbosity) {
+    Ok(match args.accuracy.is_kept(&rendered.tally, verbosity) {
         true => Status::Done,
         false => Status::NotCertified,
     })
+}
+
+/// Says how many rays each view took, and how long.
+fn tell_of_costs(costs: &[ViewCost], verbosity: Verbosity) {
+    for &ViewCost { rays, seconds } in costs {
+        verbosity.detail(format_args!(
+            "{} in {seconds:.3} s, {:.2} million a second",
+            counted(rays as usize, "ray"),
+            rays as f64 / seconds / 1e6
+        ));
+    }
+}
+
+/// Says where nothing is to be seen, and where there would be something.
+fn tell_of_empty(empty: &[EmptyView], steps: usize, verbosity: Verbosity) {
+    let Some(first) = empty.first() else {
+        return;
+    };
+    let DVec3 { x, y, z } = first.look;
+    let which = match steps {
+        1 => "nothing is to be seen in the picture".to_owned(),
+        _ => format!("nothing is to be seen at {} of {steps} steps", empty.len()),
+    };
+    verbosity.note(format_args!(
+        "{which}: what there is is in another direction, or smaller than a pixel; try --look={x:.3},{y:.3},{z:.3} \
+         with a --fov, or --full-sky"
+    ));
 }
 
 /// What is where in a picture, and in which colour.

@@ -4,11 +4,17 @@ mod ahead;
 mod budget;
 mod clock;
 mod export;
+mod extent;
 mod files;
+mod framing;
+mod guides;
 mod input;
 mod load;
+mod pictures;
 mod progress;
+mod sheet;
 mod tally;
+mod views;
 mod work;
 
 pub use budget::{DEFAULT_MAX_TRIANGLES, Fitted};
@@ -17,7 +23,13 @@ pub use export::{
     levels_of_detail, write_report,
 };
 pub use files::{OutputError, check_outputs, file_for_each_step, with_suffix};
+pub use framing::{Aim, CameraSettings, FieldOfView, FramingError, OBSERVER_FOV_DEG};
+pub use guides::{Ghost, Guides};
 pub use input::{InputError, MAX_SCENE_BYTES, SceneTextError, scene_from_bytes, stand_off};
 pub use load::{FileFindings, LoadError, load_models};
+pub use pictures::{
+    EmptyView, PictureMethod, PictureSettings, PictureView, RenderError, Rendered, ViewCost,
+    render, render_to_files,
+};
 pub use progress::{Cancelled, Progress};
 pub use tally::Tally;

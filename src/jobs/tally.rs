@@ -22,7 +22,7 @@ impl Tally {
     }
 
     /// Counts one photosurface more, and so many triangles.
-    pub fn add(&mut self, facts: &Facts, triangles: usize) {
+    pub(super) fn add(&mut self, facts: &Facts, triangles: usize) {
         self.photosurfaces += 1;
         self.triangles += triangles;
         if facts.certificate.complete {

@@ -1,5 +1,6 @@
 //! What stands before the camera, and the picture of it.
 
+use std::convert::Infallible;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec3};
@@ -60,12 +61,7 @@ const FACETS: f64 = 1e-4;
 /// }
 /// let camera = Camera::new(PictureSize::new(64, 48)?, Projection::Pinhole { vertical_fov_deg: 30.0 }, DVec3::NEG_Z)?;
 /// let moment = placed.scene().moment(0).expect("a scene has a first step");
-/// let picture = scenery.picture(
-///     &camera,
-///     Viewpoint::Observer(&moment),
-///     PictureOptions::default(),
-///     &|| (),
-/// );
+/// let picture = scenery.picture(&camera, Viewpoint::Observer(&moment), PictureOptions::default());
 /// assert_ne!(picture.pixel(32, 24), picture.pixel(0, 0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -181,7 +177,7 @@ impl Scenery {
         });
     }
 
-    /// The picture that `camera` takes; `row_done` is called after every row.
+    /// The picture that `camera` takes.
     ///
     /// Pixels are independent, rows are shared out among threads: the bytes are the same for any number
     /// of them. Memory is that of the picture.
@@ -190,21 +186,38 @@ impl Scenery {
         camera: &Camera,
         viewpoint: Viewpoint,
         options: PictureOptions,
-        row_done: &(dyn Fn() + Sync),
     ) -> Picture {
+        let going_on = || Ok::<(), Infallible>(());
+        let Ok(picture) = self.try_picture(camera, viewpoint, options, going_on);
+        picture
+    }
+
+    /// As [`Scenery::picture`], with a function that hears of every row and may stop the work: `row_done` is called once
+    /// after each row, from several threads and in no particular order.
+    ///
+    /// # Errors
+    ///
+    /// An error that `row_done` has returned. No row is begun after it; rows in work on other threads are finished first.
+    pub fn try_picture<E: Send>(
+        &self,
+        camera: &Camera,
+        viewpoint: Viewpoint,
+        options: PictureOptions,
+        row_done: impl Fn() -> Result<(), E> + Sync,
+    ) -> Result<Picture, E> {
         let shader = self.pixel_shader(camera, viewpoint, options);
         let size = camera.size();
         let mut bytes = vec![0; 3 * size.width() as usize * size.height() as usize];
         let rows = bytes.par_chunks_mut(3 * size.width() as usize);
-        rows.enumerate().for_each(|(y, row)| {
+        rows.enumerate().try_for_each(|(y, row)| {
             for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
                 let corner = DVec2::new(x as f64, y as f64);
                 let light = shader.mean_light(camera, corner, grid_places(options.samples));
                 pixel.copy_from_slice(&encoded(light));
             }
-            row_done();
-        });
-        Picture::new(size, bytes)
+            row_done()
+        })?;
+        Ok(Picture::new(size, bytes))
     }
 
     /// The linear light of all pixels, row by row from the top, before it becomes bytes: of each pixel, by its number,
@@ -324,7 +337,7 @@ mod tests {
             background: Color([0, 0, 255]),
             wireframe: None,
         };
-        let picture = scenery.picture(&camera, Viewpoint::Outside(eye), options, &|| ());
+        let picture = scenery.picture(&camera, Viewpoint::Outside(eye), options);
         picture.pixel(0, 0)
     }
 
@@ -379,7 +392,7 @@ mod tests {
                 wireframe: None,
             };
             let viewpoint = Viewpoint::Outside(DVec3::Z);
-            let picture = scenery.picture(&camera, viewpoint, options, &|| ());
+            let picture = scenery.picture(&camera, viewpoint, options);
             assert_eq!(picture.pixel(0, 0), [188; 3]);
         }
     }

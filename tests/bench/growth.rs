@@ -144,7 +144,7 @@ fn picture(placed: &PlacedScene) -> Duration {
             samples: 1,
             ..PictureOptions::default()
         };
-        scenery.picture(&camera, Viewpoint::Observer(&moment), options, &|| ())
+        scenery.picture(&camera, Viewpoint::Observer(&moment), options)
     })
 }
 

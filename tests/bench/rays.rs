@@ -96,9 +96,7 @@ impl Sight {
             samples,
             ..PictureOptions::default()
         };
-        let picture = self
-            .scenery
-            .picture(&self.camera, viewpoint, options, &|| ());
+        let picture = self.scenery.picture(&self.camera, viewpoint, options);
         std::hint::black_box(picture);
     }
 

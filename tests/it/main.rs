@@ -52,6 +52,7 @@ mod export {
 
 mod render {
     mod golden;
+    mod one_call;
     mod pictures;
 }
 

@@ -803,7 +803,7 @@ fn pictures_take_any_numbers() {
                     wireframe: Some(white),
                     ..PictureOptions::default()
                 };
-                let mut picture = scenery.picture(camera, eye, options, &|| ());
+                let mut picture = scenery.picture(camera, eye, options);
                 let lines = vec![[DVec3::new(x, 0.0, 0.0), DVec3::Y]];
                 let strokes = Strokes {
                     lines,
@@ -821,7 +821,7 @@ fn pictures_take_any_numbers() {
     let one = PictureSize::new(1, 1).unwrap();
     let camera = Camera::new(one, Projection::FullSky, DVec3::NEG_Z).unwrap();
     let viewpoint = Viewpoint::Outside(DVec3::Z * 9.0);
-    Scenery::new().picture(&camera, viewpoint, options, &|| ());
+    Scenery::new().picture(&camera, viewpoint, options);
 }
 
 /// Steps between ends whose difference is beyond `f64` were infinite.

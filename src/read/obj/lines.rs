@@ -512,7 +512,7 @@ mod tests {
         assert!(message("v 0 0 0\nf 0/1 1 1").contains("refers to v 0"));
         assert!(message("f 1/1/1/1 1 1").contains("expected v, v/vt, v//vn or v/vt/vn"));
         assert!(message("f /1 1 1").contains("corner \"/1\""));
-        assert!(message("v 0 0 0\nf -9223372036854775808 1 1").contains("asks for v -92"));
-        assert!(message("v 0 0 0\nf 9223372036854775807 1 1").contains("asks for v 92"));
+        assert!(message("v 0 0 0\nf -9223372036854775808 1 1").contains("refers to v -92"));
+        assert!(message("v 0 0 0\nf 9223372036854775807 1 1").contains("refers to v 92"));
     }
 }

@@ -230,9 +230,8 @@ fn rays_agree_with_the_turned_photosurface() {
             background: Color([0; 3]),
             wireframe: None,
         };
-        let take = |scenery: &Scenery| {
-            scenery.picture(&camera, Viewpoint::Observer(&moment), options, &|| ())
-        };
+        let take =
+            |scenery: &Scenery| scenery.picture(&camera, Viewpoint::Observer(&moment), options);
         let (by_rays, by_mesh) = (take(&at_rest), take(&turned));
         let levels = |picture: &Picture| picture.bytes().to_vec();
         let (a, b) = (levels(&by_rays), levels(&by_mesh));

@@ -553,7 +553,7 @@ fn write_and_draw(placed: &PlacedScene, surfaces: &[Photosurface]) {
             Viewpoint::Outside(surfaces[0].around.1),
         ];
         for viewpoint in viewpoints {
-            scenery.picture(&camera, viewpoint, PictureOptions::default(), &|| ());
+            scenery.picture(&camera, viewpoint, PictureOptions::default());
         }
     }
 }

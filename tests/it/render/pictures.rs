@@ -61,7 +61,7 @@ fn take(placed: &PlacedScene, scenery: &Scenery, camera: &Camera) -> Picture {
     assert!(scenery.textures().missing().is_empty());
     let moment = placed.scene().moment(0).unwrap();
     let viewpoint = Viewpoint::Observer(&moment);
-    scenery.picture(camera, viewpoint, BARE, &|| ())
+    scenery.picture(camera, viewpoint, BARE)
 }
 
 /// What a pixel shows: nothing, or one of three kinds of things, by its strongest channel.

@@ -72,7 +72,7 @@ fn take(case: &Case, placed: PlacedScene) {
                 &seen
             }
         };
-        let picture = scenery.picture(&camera, viewpoint, options, &|| ());
+        let picture = scenery.picture(&camera, viewpoint, options);
         let mut png = vec![];
         picture.write_png(&mut png).expect("memory takes a picture");
         assert!(png.starts_with(b"\x89PNG"));

@@ -1,0 +1,138 @@
+//! How far places reach, in space and on the observer's sky: what a camera has to frame.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+/// Number of directions that [`outermost`] looks in. About 20 degrees lie between two of them: what is round sticks out by
+/// less than 2 % of its radius between two places that are farthest out.
+const DIRECTIONS: usize = 128;
+
+/// The middle of the part of the sky that places take up around the origin, as a unit vector; -z where there are none.
+///
+/// It is not the middle of the places in space: an observer may be in the midst of them.
+pub(super) fn middle_of_sky(places: &[DVec3]) -> DVec3 {
+    let directions = places
+        .iter()
+        .filter_map(|place| scaled(*place).try_normalize());
+    // Not the mean of the vertices, of which there may be more on one side.
+    let (low, high) = bounds(directions);
+    (low + high).try_normalize().unwrap_or(DVec3::NEG_Z)
+}
+
+/// The largest angle between the direction `middle` and any of the places, seen from the origin, in radians.
+pub(super) fn angle_around(middle: DVec3, places: &[DVec3]) -> f64 {
+    // A cosine does not tell small angles apart.
+    let angle = |place: &DVec3| {
+        let place = scaled(*place);
+        place.cross(middle).length().atan2(place.dot(middle))
+    };
+    places.iter().map(angle).fold(0.0, f64::max)
+}
+
+/// The smallest and the largest coordinates of all places.
+pub(super) fn bounds(places: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
+    places.fold(
+        (DVec3::INFINITY, DVec3::NEG_INFINITY),
+        |(low, high), place| (low.min(place), high.max(place)),
+    )
+}
+
+/// The largest absolute value of a coordinate of all places.
+pub(super) fn reach<'a>(places: impl Iterator<Item = &'a DVec3>) -> f64 {
+    places
+        .map(|place| place.abs().max_element())
+        .fold(0.0, f64::max)
+}
+
+/// The places that are farthest out, one for each of [`DIRECTIONS`] directions: all that a frame depends on.
+pub(super) fn outermost(places: Vec<DVec3>) -> Vec<DVec3> {
+    if places.len() <= DIRECTIONS {
+        return places;
+    }
+    let farthest = |direction: DVec3| {
+        let by_distance = |a: &&DVec3, b: &&DVec3| a.dot(direction).total_cmp(&b.dot(direction));
+        places.iter().max_by(by_distance).copied()
+    };
+    directions().filter_map(farthest).collect()
+}
+
+/// Unit vectors evenly over the sphere, along a spiral of the golden angle.
+fn directions() -> impl Iterator<Item = DVec3> {
+    (0..DIRECTIONS).map(|index| {
+        let height = (2.0 * index as f64 + 1.0) / DIRECTIONS as f64 - 1.0;
+        let (sin, cos) = (index as f64 * PI * (3.0 - 5f64.sqrt())).sin_cos();
+        let across = (1.0 - height * height).sqrt();
+        DVec3::new(across * cos, height, across * sin)
+    })
+}
+
+/// A vector of the same direction whose square neither overflows nor vanishes: the vector itself wherever it is one.
+pub(super) fn scaled(vector: DVec3) -> DVec3 {
+    let largest = vector.abs().max_element();
+    if (1e-140..1e140).contains(&largest) || largest == 0.0 || !vector.is_finite() {
+        return vector;
+    }
+    // In two steps, because the reciprocal of the least numbers overflows.
+    let scale = if largest < 1.0 { 1e160 } else { 1e-160 };
+    let nearer = vector * scale;
+    nearer / nearer.abs().max_element()
+}
+
+/// The length of a vector, also where its square overflows or vanishes.
+pub(super) fn length(vector: DVec3) -> f64 {
+    let largest = vector.abs().max_element();
+    match (1e-140..1e140).contains(&largest) || !(largest > 0.0 && vector.is_finite()) {
+        true => vector.length(),
+        false => (vector / largest).length() * largest,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outermost_places_stand_for_all() {
+        let angles = (0..5000).map(|k| f64::from(k) * 2.399_963);
+        let ball: Vec<_> = angles
+            .map(|angle| DVec3::new(angle.cos(), (0.01 * angle).sin(), angle.sin()).normalize())
+            .collect();
+        let outer = outermost(ball.clone());
+        assert!(outer.len() <= DIRECTIONS && outer.iter().all(|place| ball.contains(place)));
+        // What is farthest along a neighbouring direction is less far by twice what lies between the two at most, for
+        // all are within 1 of the origin.
+        for direction in [DVec3::X, DVec3::Y, DVec3::ONE.normalize()] {
+            let farthest = |places: &[DVec3]| {
+                let along = places.iter().map(|place| place.dot(direction));
+                along.fold(f64::NEG_INFINITY, f64::max)
+            };
+            let between = directions().map(|other| other.distance(direction));
+            let between = between.fold(f64::INFINITY, f64::min);
+            assert!(between < 0.3, "{between}");
+            assert!(
+                farthest(&outer) >= farthest(&ball) - 2.0 * between,
+                "{direction}"
+            );
+        }
+        let few = vec![DVec3::ZERO; 3];
+        assert_eq!(outermost(few.clone()), few);
+    }
+
+    /// A place so far away, or so close, that its square overflows or vanishes is seen where it is.
+    #[test]
+    fn the_middle_of_the_sky_is_that_of_places_at_any_distance() {
+        for distance in [1e-310, 1e-200, 1.0, 1e200, 1e305] {
+            let places = [DVec3::new(0.6, 0.8, 0.0), DVec3::new(0.6, -0.8, 0.0)];
+            let places = places.map(|place| place * distance);
+            let middle = middle_of_sky(&places);
+            assert!(middle.distance(DVec3::X) < 1e-12, "{distance}");
+            let angle = angle_around(middle, &places);
+            assert!((angle - 0.8_f64.atan2(0.6)).abs() < 1e-9, "{distance}");
+            assert!(
+                (length(places[0]) / distance - 1.0).abs() < 1e-9,
+                "{distance}"
+            );
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! Single views of a scene: one step as the observer sees it, or some steps from outside.
+
+use std::ops::Range;
+use std::time::Instant;
+
+use glam::DVec3;
+
+use super::extent::{middle_of_sky, outermost};
+use super::framing::{OutsideCamera, seen_vertices};
+use super::pictures::{
+    EmptyView, PictureMethod, PictureSettings, PictureView, RenderError, Rendered, ViewCost,
+};
+use super::progress::Progress;
+use crate::pipeline::{PlacedScene, PlacedSceneError};
+use crate::render::{Camera, Picture, PictureOptions, Scenery, Strokes, Textures, Viewpoint};
+use crate::shape::Color;
+
+/// The colour of wires: it shows on light and on dark surfaces.
+const WIRE: Color = Color([0x2c, 0x3e, 0x50]);
+
+/// A placed scene, how views of it are drawn, and what there is to be said of those that have been.
+pub(super) struct Views<'a> {
+    pub(super) placed: &'a PlacedScene,
+    pub(super) settings: &'a PictureSettings,
+    textures: &'a Textures,
+    progress: &'a dyn Progress,
+    /// All objects in their rest frames, for views by rays.
+    at_rest: Option<Scenery>,
+    /// The first step whose photosurfaces have not been counted yet.
+    next_step: usize,
+    pub(super) rendered: Rendered,
+}
+
+impl<'a> Views<'a> {
+    pub(super) fn new(
+        placed: &'a PlacedScene,
+        textures: &'a Textures,
+        settings: &'a PictureSettings,
+        progress: &'a dyn Progress,
+    ) -> Self {
+        let by_rays = match settings.view {
+            PictureView::Observer(method) | PictureView::Sheet { method, .. } => {
+                method == PictureMethod::Rays
+            }
+            PictureView::Outside { .. } => false,
+        };
+        Self {
+            placed,
+            settings,
+            textures,
+            progress,
+            at_rest: by_rays.then(|| at_rest(placed, textures)),
+            next_step: 0,
+            rendered: Rendered::default(),
+        }
+    }
+
+    /// Vertical field of view of the observer at all steps, in degrees.
+    pub(super) fn observer_fov_deg(&self) -> Result<f64, RenderError> {
+        let places = self.steps().map(|step| self.seen_vertices(step));
+        self.settings.camera.observer_fov_deg(places)
+    }
+
+    /// A camera outside that has everything at every step in the picture, or is at the place `from`.
+    pub(super) fn outside_camera(&self, from: Option<DVec3>) -> Result<OutsideCamera, RenderError> {
+        let mut all = Vec::new();
+        for step in self.steps() {
+            all.extend(self.framed(step)?);
+        }
+        let marker = self.placed.marker();
+        if let Some((low, high)) = marker.and_then(|part| part.mesh().bounds()) {
+            all.extend([low, high]);
+        }
+        if self.settings.guides.axes {
+            all.push(DVec3::ZERO);
+        }
+        let cameras = self.settings.camera.outside_cameras(from, &[all])?;
+        Ok(cameras[0])
+    }
+
+    /// A camera outside for each step, all at one distance, or at the place `from`.
+    pub(super) fn outside_cameras(
+        &self,
+        from: Option<DVec3>,
+    ) -> Result<Vec<OutsideCamera>, RenderError> {
+        let framed: Result<Vec<_>, _> = self.steps().map(|step| self.framed(step)).collect();
+        Ok(self.settings.camera.outside_cameras(from, &framed?)?)
+    }
+
+    /// What the observer sees at one step, with a vertical field of view in degrees.
+    pub(super) fn observer(&mut self, step: usize, fov_deg: f64) -> Result<Picture, RenderError> {
+        let places = self.seen_vertices(step)?;
+        let camera = self.settings.camera.observer_camera(fov_deg, &places)?;
+        let (scene, steps) = (self.placed.scene(), self.steps().end);
+        let moment = scene.moment(step);
+        let moment = moment.ok_or(PlacedSceneError::Step { step, steps })?;
+        let viewpoint = Viewpoint::Observer(&moment);
+        let (picture, cost) = match &self.at_rest {
+            Some(scenery) => self.take(scenery, &camera, viewpoint)?,
+            None => {
+                let mut scenery = Scenery::with_textures(self.textures);
+                self.add_photosurfaces(&mut scenery, step)?;
+                self.take(&scenery, &camera, viewpoint)?
+            }
+        };
+        self.rendered.costs.push(cost);
+        let background = self.settings.background.0;
+        if picture.bytes().chunks(3).all(|pixel| pixel == background) {
+            let look = middle_of_sky(&places);
+            self.rendered.empty.push(EmptyView { step, look });
+        }
+        Ok(picture)
+    }
+
+    /// The photosurfaces of some steps from outside, with the marker of the observer and the guides.
+    pub(super) fn outside(
+        &mut self,
+        steps: Range<usize>,
+        outside: &OutsideCamera,
+    ) -> Result<Picture, RenderError> {
+        let settings = self.settings;
+        let mut scenery = Scenery::with_textures(self.textures);
+        if let Some(marker) = self.placed.marker() {
+            scenery.add_plain(marker);
+        }
+        let mut edges: Vec<Strokes<DVec3>> = Vec::new();
+        for step in steps {
+            self.add_photosurfaces(&mut scenery, step)?;
+            for (mesh, ghost_edges) in settings.guides.ghosts(self.placed, step) {
+                scenery.add_ghost(mesh, ghost_edges.color);
+                edges.push(ghost_edges);
+            }
+        }
+        let viewpoint = Viewpoint::Outside(outside.place);
+        let (mut picture, cost) = self.take(&scenery, &outside.camera, viewpoint)?;
+        self.rendered.costs.push(cost);
+        let background = settings.background;
+        settings
+            .guides
+            .draw(&mut picture, outside, &scenery, &edges, background);
+        Ok(picture)
+    }
+
+    fn steps(&self) -> Range<usize> {
+        0..self.placed.scene().steps().len()
+    }
+
+    /// The places of the given vertices at one step, in the observer's frame; an error if the job has been ended.
+    fn seen_vertices(&self, step: usize) -> Result<Vec<DVec3>, RenderError> {
+        self.progress.advance(0)?;
+        Ok(seen_vertices(self.placed, step)?)
+    }
+
+    /// The places that a camera outside has to have in the picture at one step.
+    fn framed(&self, step: usize) -> Result<Vec<DVec3>, RenderError> {
+        let mut places = self.seen_vertices(step)?;
+        for (mesh, _) in self.settings.guides.ghosts(self.placed, step) {
+            places.extend_from_slice(mesh.positions());
+        }
+        Ok(outermost(places))
+    }
+
+    fn add_photosurfaces(&mut self, scenery: &mut Scenery, step: usize) -> Result<(), RenderError> {
+        let placed = self.placed;
+        let mut objects = placed.scene().objects().iter().peekable();
+        // On a sheet by meshes each is in two pictures.
+        let is_new = step >= self.next_step;
+        self.next_step = self.next_step.max(step + 1);
+        for surface in placed.photosurfaces(step, self.settings.surface_options)? {
+            self.progress.advance(0)?;
+            // Both are in the order of the scene, in which no two objects have one name.
+            while objects
+                .next_if(|object| object.name != surface.facts.object)
+                .is_some()
+            {}
+            let object = objects
+                .peek()
+                .expect("a photosurface is of an object of its scene");
+            scenery.add_photosurface(object, &surface.mesh, surface.material.as_ref());
+            if is_new {
+                let facts = &surface.facts;
+                self.rendered.tally.add(facts, facts.triangles);
+            }
+        }
+        Ok(())
+    }
+
+    fn take(
+        &self,
+        scenery: &Scenery,
+        camera: &Camera,
+        viewpoint: Viewpoint,
+    ) -> Result<(Picture, ViewCost), RenderError> {
+        let settings = self.settings;
+        let options = PictureOptions {
+            samples: settings.samples.get(),
+            background: settings.background,
+            wireframe: settings.guides.wireframe.then_some(WIRE),
+        };
+        let start = Instant::now();
+        let row_done = || self.progress.advance(1);
+        let picture = scenery.try_picture(camera, viewpoint, options, row_done)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let [width, height, samples] = [
+            camera.size().width(),
+            camera.size().height(),
+            options.samples,
+        ]
+        .map(u64::from);
+        let rays = (width * height).saturating_mul(samples * samples);
+        Ok((picture, ViewCost { rays, seconds }))
+    }
+}
+
+/// All objects of a scene in their rest frames.
+fn at_rest(placed: &PlacedScene, textures: &Textures) -> Scenery {
+    let mut scenery = Scenery::with_textures(textures);
+    for (object, parts) in placed.objects() {
+        for (_, part) in parts {
+            scenery.add_at_rest(object, part);
+        }
+    }
+    scenery
+}
