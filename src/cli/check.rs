@@ -55,7 +55,7 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
             counted(part.mesh().triangles().len(), "triangle")
         ));
     }
-    if let Err(error) = format.least_size(&placed, placed.scene().steps().len()) {
+    if let Err(error) = format.min_size(&placed, placed.scene().steps().len()) {
         verbosity.note(format_args!("{}: {error}", input.place));
         status = Status::NotCertified;
     }

@@ -71,7 +71,7 @@ fn say(message: impl Display) {
 }
 
 /// Of a message, or a text in it, no more characters than so many are shown, of its beginning and of its end.
-const MOST_SHOWN: (usize, usize) = (1200, 600);
+const MAX_SHOWN: (usize, usize) = (1200, 600);
 
 /// A text in one line as a terminal may have it: what would move the cursor, colour what follows, begin a line of its own
 /// or turn the direction of writing is written out, and the middle of what is very long is left out.
@@ -89,7 +89,7 @@ pub(super) fn shown(text: &str) -> String {
             }
         }
     };
-    let (first, last) = MOST_SHOWN;
+    let (first, last) = MAX_SHOWN;
     let mut starts = text.char_indices().map(|(start, _)| start);
     match starts.nth(first + last) {
         None => add(text),

@@ -70,7 +70,7 @@ pub(super) fn or_ply(error: WriteError, placed: &PlacedScene) -> anyhow::Error {
 }
 
 /// A bar of so many things, on a terminal.
-pub(super) fn progress_bar(length: usize, things: &str, verbosity: Verbosity) -> ProgressBar {
+fn progress_bar(length: usize, things: &str, verbosity: Verbosity) -> ProgressBar {
     if verbosity.is_quiet() || !stderr().is_terminal() {
         return ProgressBar::hidden();
     }

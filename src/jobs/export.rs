@@ -304,7 +304,7 @@ impl ExportLevel {
             true => 1,
             false => self.placed.scene().steps().len(),
         };
-        let fits = self.format.least_size(&self.placed, steps);
+        let fits = self.format.min_size(&self.placed, steps);
         fits.and_then(|_| self.format.check_range(&self.placed))
             .map_err(|source| ExportError::of_file(&self.files[0], source))
     }

@@ -278,12 +278,12 @@ fn frame(
         from_target.z + FRAME * across / half
     });
     let distance = distances.fold(0.0, f64::max);
-    (target, distance.max(least_distance(target, distance)))
+    (target, distance.max(min_distance(target, distance)))
 }
 
 /// How far from `target` a camera has to be at least, so that it looks at it in spite of roundings, and at a single point
 /// from somewhere.
-fn least_distance(target: DVec3, distance: f64) -> f64 {
+fn min_distance(target: DVec3, distance: f64) -> f64 {
     let least = target.abs().max_element() * 1e-12;
     if distance > 0.0 {
         least

@@ -121,7 +121,7 @@ impl<'a> Views<'a> {
         let settings = self.settings;
         let mut scenery = Scenery::with_textures(self.textures);
         if let Some(marker) = self.placed.marker() {
-            scenery.add_plain(marker);
+            scenery.add_in_view(marker);
         }
         let mut edges: Vec<Strokes<DVec3>> = Vec::new();
         for step in steps {

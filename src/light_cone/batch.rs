@@ -8,7 +8,7 @@ use glam::DVec3;
 use pulp::{Arch, NullaryFnOnce};
 
 use super::block::{Accumulated, BLOCK, Block};
-use super::plain::PlainMap;
+use super::safe_range::SafeRangeMap;
 use super::{Extremes, View};
 use crate::spacetime::exact::{Fused, Product, Split};
 use crate::spacetime::length;
@@ -63,12 +63,12 @@ impl View {
 
     /// Without `ALL` the positions alone, and no extremes.
     fn see_by_blocks<const ALL: bool>(&self, batch: Batch<'_>) -> Extremes {
-        let Some(plain) = self.map().plain() else {
+        let Some(safe_map) = self.map().safe_range_map() else {
             return self.see_one_by_one(batch);
         };
         let blocks = Blocks::<ALL> {
             view: self,
-            plain,
+            safe_map,
             batch,
         };
         match Arch::new() {
@@ -103,7 +103,7 @@ impl View {
 
 struct Blocks<'a, const ALL: bool> {
     view: &'a View,
-    plain: &'a PlainMap,
+    safe_map: &'a SafeRangeMap,
     batch: Batch<'a>,
 }
 
@@ -132,7 +132,7 @@ impl<const ALL: bool> Blocks<'_, ALL> {
 
         let mut work = Work::<ALL> {
             view: self.view,
-            plain: self.plain,
+            safe_map: self.safe_map,
             block: Block::ZERO,
             of_blocks: Accumulated::new(),
             of_others: Extremes::NONE,
@@ -165,7 +165,7 @@ fn padded(vectors: &[DVec3]) -> [DVec3; BLOCK] {
 /// Blocks on their way, and what was found so far.
 struct Work<'a, const ALL: bool> {
     view: &'a View,
-    plain: &'a PlainMap,
+    safe_map: &'a SafeRangeMap,
     block: Block,
     of_blocks: Accumulated,
     of_others: Extremes,
@@ -180,8 +180,8 @@ impl<const ALL: bool> Work<'_, ALL> {
         normals: Option<(&[DVec3; BLOCK], &mut [DVec3; BLOCK])>,
     ) {
         let block = &mut self.block;
-        block.see::<P, ALL>(self.view, self.plain, rest);
-        if !block.is_plain() {
+        block.see::<P, ALL>(self.view, self.safe_map, rest);
+        if !block.is_in_safe_range() {
             let batch = Batch {
                 rest,
                 seen,
@@ -195,7 +195,7 @@ impl<const ALL: bool> Work<'_, ALL> {
             self.of_blocks.add(block);
         }
         if let Some((rest, seen)) = normals {
-            block.see_normals(self.view, self.plain, rest);
+            block.see_normals(self.view, self.safe_map, rest);
             block.normal.store(seen);
         }
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::plain::{PlainMap, Sighting, forwardness, is_plain, size};
+use super::safe_range::{SafeRangeMap, SeenPoint, forwardness, is_in_safe_range, size};
 use super::{Extremes, View};
 use crate::spacetime::exact::Product;
 
@@ -90,7 +90,7 @@ impl Block {
     pub(super) fn see<P: Product, const ALL: bool>(
         &mut self,
         view: &View,
-        plain: &PlainMap,
+        safe_map: &SafeRangeMap,
         rest: &[DVec3; BLOCK],
     ) {
         let (observer, turn) = (view.observer_rest(), view.turn());
@@ -98,14 +98,14 @@ impl Block {
         for index in 0..BLOCK {
             let rest = self.rest.get(index);
             let offset = rest - observer;
-            let sighting = plain.see::<P>(offset);
-            self.position.set(index, turn * sighting.position);
+            let seen_point = safe_map.see::<P>(offset);
+            self.position.set(index, turn * seen_point.position);
             self.size[index] = size(offset);
             if ALL {
-                self.distance[index] = sighting.distance;
-                self.lean[index] = sighting.lean;
-                self.across.set(index, sighting.across);
-                self.distance_at_rest[index] = sighting.distance_at_rest;
+                self.distance[index] = seen_point.distance;
+                self.lean[index] = seen_point.lean;
+                self.across.set(index, seen_point.across);
+                self.distance_at_rest[index] = seen_point.distance_at_rest;
                 self.square_rest[index] = rest.length_squared();
             }
         }
@@ -113,28 +113,33 @@ impl Block {
 
     /// Whether no point is tiny or huge; else all the rest means nothing.
     #[inline(always)]
-    pub(super) fn is_plain(&self) -> bool {
+    pub(super) fn is_in_safe_range(&self) -> bool {
         let mut others = 0;
         for index in 0..BLOCK {
-            others += u64::from(!is_plain(self.size[index]));
+            others += u64::from(!is_in_safe_range(self.size[index]));
         }
         others == 0
     }
 
     /// The normals there of a surface with these at rest.
     #[inline(always)]
-    pub(super) fn see_normals(&mut self, view: &View, plain: &PlainMap, rest: &[DVec3; BLOCK]) {
+    pub(super) fn see_normals(
+        &mut self,
+        view: &View,
+        safe_map: &SafeRangeMap,
+        rest: &[DVec3; BLOCK],
+    ) {
         let turn = view.turn();
         self.rest.load(rest);
         for index in 0..BLOCK {
-            let sighting = Sighting {
+            let seen_point = SeenPoint {
                 position: self.position.get(index),
                 distance: self.distance[index],
                 lean: self.lean[index],
                 across: self.across.get(index),
                 distance_at_rest: self.distance_at_rest[index],
             };
-            let normal = plain.seen_normal(&sighting, self.rest.get(index));
+            let normal = safe_map.seen_normal(&seen_point, self.rest.get(index));
             self.normal.set(index, turn * normal);
         }
     }

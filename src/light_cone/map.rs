@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::{DMat3, DVec3};
 
-use super::plain::{PlainMap, is_plain, size};
+use super::safe_range::{SafeRangeMap, is_in_safe_range, size};
 use crate::spacetime::exact::Split;
 use crate::spacetime::{Velocity, exact, harmless_scale, heading, length, unit};
 
@@ -49,7 +49,7 @@ pub struct PhotosurfaceMap {
     gamma: f64,
     gamma_beta: f64,
     /// For points that are neither tiny nor huge.
-    plain: Option<PlainMap>,
+    safe_map: Option<SafeRangeMap>,
 }
 
 /// Offsets larger than this are divided by [`BACK`], lest their squares and sums overflow.
@@ -105,14 +105,14 @@ impl PhotosurfaceMap {
             squeeze: 1.0 / observer.stretch(),
             gamma: observer.gamma(),
             gamma_beta: observer.gamma_beta(),
-            plain: PlainMap::new(observer),
+            safe_map: SafeRangeMap::new(observer),
         }
     }
 
     /// The map without a branch, where the velocity allows that: the same results, bit for bit, for all points that are
     /// neither tiny nor huge.
-    pub(super) fn plain(&self) -> Option<&PlainMap> {
-        self.plain.as_ref()
+    pub(super) fn safe_range_map(&self) -> Option<&SafeRangeMap> {
+        self.safe_map.as_ref()
     }
 
     /// The place, in the observer's frame, where a point is seen: that of the emission event.
@@ -134,8 +134,8 @@ impl PhotosurfaceMap {
     ///
     /// Rau, Weiskopf, Ruder (1998), section 3.1.
     pub fn seen_position(&self, offset_rest: DVec3) -> DVec3 {
-        match self.brought_to_plain(offset_rest) {
-            Some((plain, offset, scale)) => plain.see::<Split>(offset).position * scale,
+        match self.scaled_to_safe_range(offset_rest) {
+            Some((safe_map, offset, scale)) => safe_map.see::<Split>(offset).position * scale,
             None => self.map(offset_rest, self.squeeze, self.stretch),
         }
     }
@@ -148,15 +148,15 @@ impl PhotosurfaceMap {
 
     /// The map without a branch, an offset brought by a power of two to where it holds, and the power that makes up for
     /// that; `None` where velocity or offset are none for it.
-    fn brought_to_plain(&self, offset: DVec3) -> Option<(&PlainMap, DVec3, f64)> {
-        let plain = self.plain.as_ref()?;
-        if is_plain(size(offset)) {
-            return Some((plain, offset, 1.0));
+    fn scaled_to_safe_range(&self, offset: DVec3) -> Option<(&SafeRangeMap, DVec3, f64)> {
+        let safe_map = self.safe_map.as_ref()?;
+        if is_in_safe_range(size(offset)) {
+            return Some((safe_map, offset, 1.0));
         }
         let largest = offset.abs().max_element();
         let is_normal = offset.is_finite() && largest >= f64::MIN_POSITIVE;
         let power = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits());
-        is_normal.then(|| (plain, offset / power, power))
+        is_normal.then(|| (safe_map, offset / power, power))
     }
 
     fn map(&self, offset: DVec3, factor_u: f64, factor_w: f64) -> DVec3 {
@@ -304,10 +304,10 @@ impl PhotosurfaceMap {
     ///
     /// A zero normal stays zero.
     pub fn seen_normal(&self, offset_rest: DVec3, normal_rest: DVec3) -> DVec3 {
-        if let Some((plain, offset, _)) = self.brought_to_plain(offset_rest)
-            && is_plain(size(normal_rest))
+        if let Some((safe_map, offset, _)) = self.scaled_to_safe_range(offset_rest)
+            && is_in_safe_range(size(normal_rest))
         {
-            return plain.seen_normal(&plain.see::<Split>(offset), normal_rest);
+            return safe_map.seen_normal(&safe_map.see::<Split>(offset), normal_rest);
         }
         let n = self.direction;
         let (toward_across, doppler_factor) = self.toward_across(offset_rest);

@@ -16,9 +16,9 @@ const PREDICTION_ROOM: f64 = 1.2;
 const ADVISED: f64 = 4.0 / 3.0;
 
 /// Of more triangles than this, all steps together, a prediction looks at as many, evenly spread, but at each step at
-/// as many as [`LEAST_LOOKED_AT`] at least.
+/// as many as [`MIN_LOOKED_AT`] at least.
 const TRIANGLES_LOOKED_AT: usize = 50_000;
-const LEAST_LOOKED_AT: usize = 5_000;
+const MIN_LOOKED_AT: usize = 5_000;
 
 /// Of more steps than this a prediction looks at as many, evenly spread.
 const STEPS_LOOKED_AT: usize = 32;
@@ -32,7 +32,7 @@ const MAX_HALVINGS: usize = 8;
 
 /// Where even the loosest aim takes more than there is, so many times as much is spent: the last few per cent would
 /// take a tolerance that says nothing any more.
-const SPENT_AT_LEAST: f64 = 1.05;
+const MIN_SPENT: f64 = 1.05;
 
 /// What is predicted for each object, at each step that was looked at.
 type Forecast = Vec<Vec<Predicted>>;
@@ -213,7 +213,7 @@ impl PlacedScene {
             // Nothing is left to be granted.
             return least;
         }
-        share = share.max(SPENT_AT_LEAST * least);
+        share = share.max(MIN_SPENT * least);
         let mut too_tight = 1.0;
         let mut loosening: f64 = 1.0;
         self.objects[object].loosening = loosening;
@@ -270,7 +270,7 @@ impl PlacedScene {
         let (object, placed_object) = (&self.scene.objects()[object], &self.objects[object]);
         let steps = self.scene.steps().len();
         let looked_at = steps.min(STEPS_LOOKED_AT);
-        let triangles = (TRIANGLES_LOOKED_AT / looked_at).max(LEAST_LOOKED_AT);
+        let triangles = (TRIANGLES_LOOKED_AT / looked_at).max(MIN_LOOKED_AT);
         let sketch = (wanted.subdivide.then(|| placed_object.sketch(triangles))).flatten();
         let (placed_object, weights) = match &sketch {
             Some((sketch, weights)) => (sketch, weights.clone()),

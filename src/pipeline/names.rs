@@ -12,7 +12,7 @@ pub fn step_label(step: usize) -> String {
 /// Blender, trimesh, MeshLab and the validator keep letters of all scripts and whatever else there is. three.js makes
 /// `_` of white space and drops `[ ] . : /`, which its paths of properties are made of. What is no character to be shown
 /// is no name in any program.
-pub(super) fn plain(wanted: &str) -> String {
+pub(super) fn safe_name(wanted: &str) -> String {
     let is_broken =
         |c: char| c.is_control() || c.is_whitespace() || c == '\u{feff}' || "[].:/".contains(c);
     let kept = |c| if is_broken(c) { '_' } else { c };
@@ -28,17 +28,17 @@ pub(super) struct UniqueNames {
 }
 
 impl UniqueNames {
-    /// `wanted` in [`plain`] characters, and with a number behind it if it was taken.
+    /// `wanted` in [`safe_name`] characters, and with a number behind it if it was taken.
     ///
     /// However many want one name, each takes the same time.
     pub(super) fn unique(&mut self, wanted: &str) -> String {
-        let plain = plain(wanted);
-        if self.taken.insert(plain.clone()) {
-            return plain;
+        let safe = safe_name(wanted);
+        if self.taken.insert(safe.clone()) {
+            return safe;
         }
-        let next = self.next.entry(plain.clone()).or_insert(2);
+        let next = self.next.entry(safe.clone()).or_insert(2);
         loop {
-            let name = format!("{plain}_{next}");
+            let name = format!("{safe}_{next}");
             *next += 1;
             if self.taken.insert(name.clone()) {
                 return name;
@@ -68,10 +68,10 @@ mod tests {
     fn letters_of_every_script_stay_and_what_a_reader_breaks_does_not() {
         for kept in ["立方体", "куб", "مكعب", "क्यूब", "cube(1)#\"é\"", "🎲"]
         {
-            assert_eq!(plain(kept), kept);
+            assert_eq!(safe_name(kept), kept);
         }
         assert_eq!(
-            plain("a[0].b:c/d\u{a0}e\u{1b}\n\u{85}\u{feff}"),
+            safe_name("a[0].b:c/d\u{a0}e\u{1b}\n\u{85}\u{feff}"),
             "a_0__b_c_d_e____"
         );
     }

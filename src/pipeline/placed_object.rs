@@ -104,7 +104,7 @@ impl Shaped {
     }
 
     /// Of how many triangles its coarsest form is made; `parts` are those of any.
-    pub(super) fn fewest_triangles(&self, parts: &[(String, Part)]) -> u64 {
+    pub(super) fn min_triangles(&self, parts: &[(String, Part)]) -> u64 {
         let coarsest = self.shape.within(f64::INFINITY);
         if coarsest == self.shape {
             triangle_count(parts)

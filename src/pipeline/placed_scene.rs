@@ -99,7 +99,7 @@ impl PlacedScene {
             let shaped = Shaped::of(object);
             objects.push(PlacedObject {
                 source_triangles: match &shaped {
-                    Some(shaped) => shaped.fewest_triangles(&parts),
+                    Some(shaped) => shaped.min_triangles(&parts),
                     None => triangle_count(&parts),
                 },
                 parts,
@@ -154,7 +154,7 @@ impl PlacedScene {
                 .iter()
                 .map(move |(name, part)| (wanted(part), name.as_str()))
         });
-        all.filter(|(wanted, _)| names::plain(wanted) != *wanted)
+        all.filter(|(wanted, _)| names::safe_name(wanted) != *wanted)
     }
 
     /// How the observer sees everything that moves along with an object, at one step, counted from 0; `None` where the

@@ -35,7 +35,7 @@ const ROOM: f64 = 0.999;
 
 /// What part of a tolerance the gap gets where curvature and rounding take more than there is; the certificate
 /// tells.
-const LEAST_FOR_GAP: f64 = 0.1;
+const MIN_FOR_GAP: f64 = 0.1;
 
 /// Where an angle is the tolerance of a curved shape, it is one at this part of the shape's size at least: an
 /// observer who touches it sees any facet under a large angle.
@@ -46,7 +46,7 @@ const NEAREST_OF_ALL: f64 = 1e-5;
 
 /// Where an angle is the tolerance, no triangle is made smaller than this part of the mesh: where the observer
 /// touches a surface, any gap is seen under the same angle.
-const LEAST_OF_ANGLE: f64 = 1e-6;
+const MIN_OF_ANGLE: f64 = 1e-6;
 
 /// Where rounding is less than this part of a tolerance, what there is of it beyond the corners of facets goes into
 /// [`ROOM`]: ten times as much would.
@@ -477,7 +477,7 @@ impl<'a> Plan<'a> {
                 // goes with the distance.
                 let s = degrees.to_radians().sin();
                 let left = if curvature > 0.0 {
-                    (1.0 - CURVATURE_SHARE * (1.0 + s)).max(LEAST_FOR_GAP)
+                    (1.0 - CURVATURE_SHARE * (1.0 + s)).max(MIN_FOR_GAP)
                 } else {
                     1.0
                 };
@@ -486,11 +486,11 @@ impl<'a> Plan<'a> {
                     view: self.view,
                     share: s * left * share,
                     less: (1.0 + s) * rounding * share,
-                    least: LEAST_OF_ANGLE * diagonal(seen) * s * share,
+                    least: MIN_OF_ANGLE * diagonal(seen) * s * share,
                 }
             }
             _ => {
-                let least = LEAST_FOR_GAP * length_of(tolerance, seen);
+                let least = MIN_FOR_GAP * length_of(tolerance, seen);
                 Allowance::Everywhere(ROOM * left.max(least) / gamma_beta)
             }
         }

@@ -54,7 +54,7 @@ pub(crate) struct Panel {
 }
 
 /// What a line or a dot stands for, and where in its line of the legend it stands.
-pub(crate) struct Entry<'a> {
+pub(crate) struct LegendItem<'a> {
     text: &'static str,
     /// `None` of the line of theory.
     curve: Option<&'a Curve>,
@@ -74,12 +74,12 @@ impl Panel {
         &self,
         area: &DrawingArea<B, Shift>,
         scale: f64,
-    ) -> Result<Vec<Vec<Entry<'_>>>, DrawingAreaErrorKind<B::ErrorType>> {
+    ) -> Result<Vec<Vec<LegendItem<'_>>>, DrawingAreaErrorKind<B::ErrorType>> {
         let px = |pixels: f64| (pixels * scale).round() as i32;
         let style = (FAMILY, LETTERS * scale).into_text_style(area);
         let room = area.dim_in_pixel().0 as i32 - px(ASIDE + 2.0 * MARGIN);
         let curves = self.curves.iter().map(|curve| (curve.label, Some(curve)));
-        let mut lines: Vec<Vec<Entry<'_>>> = vec![vec![]];
+        let mut lines: Vec<Vec<LegendItem<'_>>> = vec![vec![]];
         let mut left = 0;
         for (text, curve) in curves.chain([(self.slope_text, None)]) {
             let width = px(SWATCH) + area.estimate_text_size(text, &style)?.0 as i32;
@@ -88,7 +88,7 @@ impl Panel {
                 left = 0;
             }
             let line = lines.last_mut().expect("there is a first line");
-            line.push(Entry { text, curve, left });
+            line.push(LegendItem { text, curve, left });
             left += width + px(2.0 * MARGIN);
         }
         Ok(lines)

@@ -13,7 +13,7 @@ use super::ReadError;
 use super::access::{Reach, open_ordinary};
 
 /// How many bytes are read at most of a file that does not say how many it has.
-const MOST_UNANNOUNCED: u64 = 1 << 30;
+const MAX_UNANNOUNCED: u64 = 1 << 30;
 
 /// A run of bytes; several threads may read it at once.
 pub(super) enum Bytes<'a> {
@@ -45,7 +45,7 @@ impl Bytes<'_> {
         // Some systems have files that only seem to be empty.
         if metadata.len() == 0 {
             let mut bytes = vec![];
-            let limit = limit.min(MOST_UNANNOUNCED);
+            let limit = limit.min(MAX_UNANNOUNCED);
             io::Read::read_to_end(&mut io::Read::take(file, limit), &mut bytes).map_err(
                 |source| ReadError::File {
                     path: path.to_owned(),

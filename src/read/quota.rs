@@ -6,9 +6,9 @@ use std::cell::Cell;
 use super::AccessorProblem;
 
 /// So much may be made of any file, however small: copies of meshes that take 800 MB.
-const LEAST: u64 = 1 << 25;
+const MIN: u64 = 1 << 25;
 /// So many zeros, which no exporter writes many of.
-const LEAST_ZEROS: u64 = 1 << 24;
+const MIN_ZEROS: u64 = 1 << 24;
 /// So much of each byte of a larger one. What is stored once takes at most one for each byte, and meshes whose hundred
 /// materials share all vertices about this.
 const FOR_EACH_BYTE: u64 = 16;
@@ -22,12 +22,12 @@ pub(super) struct Quota {
 impl Quota {
     /// That of a file with so many bytes, those of its buffers among them.
     pub(super) fn of(bytes: u64) -> Self {
-        Self::at_least(LEAST, bytes)
+        Self::at_least(MIN, bytes)
     }
 
     /// That of the zeros in accessors without data.
     pub(super) fn of_zeros(bytes: u64) -> Self {
-        Self::at_least(LEAST_ZEROS, bytes)
+        Self::at_least(MIN_ZEROS, bytes)
     }
 
     fn at_least(least: u64, bytes: u64) -> Self {

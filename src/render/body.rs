@@ -62,8 +62,8 @@ pub(super) enum Stands {
     AtRest(WorldLine),
     /// The observer's, mapped from its rest frame.
     Mapped(WorldLine),
-    /// The observer's.
-    Plain,
+    /// The observer's frame, as it is.
+    InView,
 }
 
 /// Where a ray meets a body, in the frame of the body's geometry.

@@ -10,7 +10,7 @@ use super::crowd::Crowd;
 pub(super) const AMBIENT: f32 = 0.25;
 
 /// Most surfaces one ray of light is followed through.
-const MOST_LAYERS: usize = 64;
+const MAX_LAYERS: usize = 64;
 
 /// A ray goes on behind a surface by this part of the way to it, so that it does not meet it again.
 const STEP_BEHIND: f64 = 1.0 + 1e-12;
@@ -77,7 +77,7 @@ impl PixelShader<'_> {
         let mut clearness = 1.0;
         let mut beyond = 0.0;
         let mut first = f64::MAX;
-        for _ in 0..MOST_LAYERS {
+        for _ in 0..MAX_LAYERS {
             let nearest = self
                 .crowd
                 .nearest(seen, beyond, f64::MAX, self.wires.is_some());

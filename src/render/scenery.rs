@@ -147,9 +147,9 @@ impl Scenery {
     }
 
     /// Adds a thing as it stands in the observer's frame.
-    pub fn add_plain(&mut self, part: &Part) {
+    pub fn add_in_view(&mut self, part: &Part) {
         let geometry = Geometry::Mesh(Caster::new(part.mesh().clone()));
-        self.add(geometry, part.material.as_ref(), &part.name, Stands::Plain);
+        self.add(geometry, part.material.as_ref(), &part.name, Stands::InView);
     }
 
     /// Adds a thing that stands in the observer's frame and is only hinted at, in one colour.
@@ -158,7 +158,7 @@ impl Scenery {
         let body = Body {
             geometry: Geometry::Mesh(Caster::new(mesh)),
             paint,
-            stands: Stands::Plain,
+            stands: Stands::InView,
         };
         self.ghosts.push((body, color.linear().into()));
     }
@@ -325,7 +325,7 @@ mod tests {
     fn pixel(parts: &[Part], eye: DVec3, look: DVec3) -> [u8; 3] {
         let mut scenery = Scenery::new();
         for part in parts {
-            scenery.add_plain(part);
+            scenery.add_in_view(part);
         }
         let size = PictureSize::new(1, 1).unwrap();
         let projection = Projection::Pinhole {
@@ -379,7 +379,7 @@ mod tests {
         let mut scenery = Scenery::new();
         let mut wall = square(0.0, [1.0; 4], "OPAQUE", true);
         wall = wall.transformed(&glam::DAffine3::from_translation(DVec3::X * 100.0));
-        scenery.add_plain(&wall);
+        scenery.add_in_view(&wall);
         let size = PictureSize::new(1, 1).unwrap();
         let projection = Projection::Pinhole {
             vertical_fov_deg: 1.0,

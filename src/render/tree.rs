@@ -1,7 +1,7 @@
 //! A tree of boxes: what a ray may meet, and what may hold a point, without asking everything.
 //!
 //! Of a tree that others keep, three things are asked here that `parry3d`'s does not have: it is at most
-//! [`MOST_LEVELS`] deep, whatever lies where; flat boxes are weighed by their area, not their volume, which is nothing; and
+//! [`MAX_LEVELS`] deep, whatever lies where; flat boxes are weighed by their area, not their volume, which is nothing; and
 //! bundles of slivers have slanted boxes ([`super::slant`]).
 
 use glam::DVec3;
@@ -17,9 +17,9 @@ const FEW: usize = 2;
 const BINS: usize = 16;
 
 /// So many levels of a tree are divided where it is best; further ones at the middle of what there is, so that even
-/// 2^32 things need no more than [`MOST_LEVELS`].
+/// 2^32 things need no more than [`MAX_LEVELS`].
 const BEST_LEVELS: usize = 48;
-pub(super) const MOST_LEVELS: usize = BEST_LEVELS + 32;
+pub(super) const MAX_LEVELS: usize = BEST_LEVELS + 32;
 
 /// Boxes are larger by this part of all lengths that take part: a ray that the test of a triangle takes, roundings and all,
 /// must not be lost at a box.
@@ -140,7 +140,7 @@ impl Tree {
         };
         let mut limit = limit;
         // One for each level that is being looked into: never more than there are levels.
-        let mut waiting = [(0, 0.0); MOST_LEVELS + 1];
+        let mut waiting = [(0, 0.0); MAX_LEVELS + 1];
         let mut count = 0;
         let mut here = (!self.nodes.is_empty()).then_some(0);
         here = here.filter(|&root| enters(root).is_some_and(|near| near <= limit));
@@ -184,7 +184,7 @@ impl Tree {
 
     /// Visits everything whose box holds `place`.
     pub(super) fn holding(&self, place: DVec3, mut visit: impl FnMut(u32)) {
-        let mut waiting = [0; MOST_LEVELS + 1];
+        let mut waiting = [0; MAX_LEVELS + 1];
         let mut count = usize::from(!self.nodes.is_empty());
         while count > 0 {
             count -= 1;
@@ -346,7 +346,7 @@ mod tests {
                 .map(|k| cube(DVec3::new(place(k), 0.0, 0.0), 0.1))
                 .collect();
             let tree = Tree::new(&all);
-            assert!(depth(&tree) <= MOST_LEVELS + 1, "{which}: {}", depth(&tree));
+            assert!(depth(&tree) <= MAX_LEVELS + 1, "{which}: {}", depth(&tree));
             let mut things = tree.things.clone();
             things.sort_unstable();
             assert!(things.into_iter().eq(0..count as u32));

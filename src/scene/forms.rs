@@ -39,8 +39,8 @@ where
     D: Deserializer<'de>,
     T: Deserialize<'de> + Keyed,
 {
-    struct Form<T>(PhantomData<T>);
-    impl<'de, T: Deserialize<'de> + Keyed> Visitor<'de> for Form<T> {
+    struct TaggedVisitor<T>(PhantomData<T>);
+    impl<'de, T: Deserialize<'de> + Keyed> Visitor<'de> for TaggedVisitor<T> {
         type Value = T;
 
         fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -51,7 +51,7 @@ where
             T::deserialize(MapAccessDeserializer::new(map))
         }
     }
-    deserializer.deserialize_any(Form(PhantomData))
+    deserializer.deserialize_any(TaggedVisitor(PhantomData))
 }
 
 macro_rules! keyed {
@@ -83,8 +83,8 @@ const SHAPES: &[&str] = &[
 
 /// Exactly one shape.
 pub(super) fn shape<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Shape>, D::Error> {
-    struct Form;
-    impl<'de> Visitor<'de> for Form {
+    struct ShapeVisitor;
+    impl<'de> Visitor<'de> for ShapeVisitor {
         type Value = Shape;
 
         fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -119,7 +119,7 @@ pub(super) fn shape<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option
             }
         }
     }
-    deserializer.deserialize_any(Form).map(Some)
+    deserializer.deserialize_any(ShapeVisitor).map(Some)
 }
 
 /// The name of a file.
@@ -173,8 +173,8 @@ pub(super) struct SpeedForm {
 }
 
 pub(super) fn velocity<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Velocity, D::Error> {
-    struct Form;
-    impl<'de> Visitor<'de> for Form {
+    struct VelocityVisitor;
+    impl<'de> Visitor<'de> for VelocityVisitor {
         type Value = Velocity;
 
         fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -209,7 +209,7 @@ pub(super) fn velocity<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vel
             }
         }
     }
-    deserializer.deserialize_any(Form)
+    deserializer.deserialize_any(VelocityVisitor)
 }
 
 /// Proper times: a list, or evenly spaced ones.
@@ -248,8 +248,8 @@ impl Default for Steps {
 
 impl<'de> Deserialize<'de> for Steps {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Form;
-        impl<'de> Visitor<'de> for Form {
+        struct StepsVisitor;
+        impl<'de> Visitor<'de> for StepsVisitor {
             type Value = Steps;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -267,6 +267,6 @@ impl<'de> Deserialize<'de> for Steps {
                     .map_err(A::Error::custom)
             }
         }
-        deserializer.deserialize_any(Form)
+        deserializer.deserialize_any(StepsVisitor)
     }
 }

@@ -65,8 +65,8 @@ impl Default for Scale {
 
 impl<'de> Deserialize<'de> for Scale {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Form;
-        impl<'de> Visitor<'de> for Form {
+        struct ScaleVisitor;
+        impl<'de> Visitor<'de> for ScaleVisitor {
             type Value = Scale;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -89,7 +89,7 @@ impl<'de> Deserialize<'de> for Scale {
                 Deserialize::deserialize(SeqAccessDeserializer::new(seq)).map(Scale)
             }
         }
-        deserializer.deserialize_any(Form)
+        deserializer.deserialize_any(ScaleVisitor)
     }
 }
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use thiserror::Error;
 
 /// The smallest number greater than zero.
-const LEAST: f64 = f64::from_bits(1);
+const MIN: f64 = f64::from_bits(1);
 
 /// A point beside the observer can be off by no more.
 const MAX_DEGREES: f64 = 90.0;
@@ -132,7 +132,7 @@ impl Tolerance {
             _ => f64::MAX,
         };
         // Not `clamp`, which lets NaN through.
-        let number = (self.number * factor).max(LEAST).min(most);
+        let number = (self.number * factor).max(MIN).min(most);
         Self { number, ..self }
     }
 }
@@ -151,8 +151,8 @@ impl fmt::Display for Tolerance {
 
 impl<'de> Deserialize<'de> for Tolerance {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Form;
-        impl<'de> Visitor<'de> for Form {
+        struct ToleranceVisitor;
+        impl<'de> Visitor<'de> for ToleranceVisitor {
             type Value = Tolerance;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -185,7 +185,7 @@ impl<'de> Deserialize<'de> for Tolerance {
                 }
             }
         }
-        deserializer.deserialize_any(Form)
+        deserializer.deserialize_any(ToleranceVisitor)
     }
 }
 
@@ -246,7 +246,7 @@ mod tests {
             for number in odd {
                 assert!(Tolerance::new(number, unit).is_err(), "{number} {unit}");
             }
-            for number in [LEAST, 1e-3, 90.0] {
+            for number in [MIN, 1e-3, 90.0] {
                 let tolerance = Tolerance::new(number, unit).unwrap();
                 for factor in odd.into_iter().chain([1e-300, 1e300, f64::MAX]) {
                     let times = tolerance.times(factor);

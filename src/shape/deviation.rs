@@ -6,8 +6,8 @@
 use std::f64::consts::PI;
 
 use super::lathe::{Ring, triangle_count};
-use super::size::MOST;
-use super::surface::MOST_TRIANGLES;
+use super::size::MAX;
+use super::surface::MAX_TRIANGLES;
 use super::{Cone, Shape, Sphere, Torus};
 
 /// The coarsest resolution that a tolerance leads to: however large it is, what is round looks round.
@@ -89,8 +89,8 @@ impl Shape {
             let shape = self.clone().with_resolution(resolution);
             shape.expect("every resolution from 12 to 4096 is one of a round shape")
         };
-        let too_many = |resolution| at(resolution).triangle_count() > MOST_TRIANGLES;
-        let finest = first(COARSEST + 1, MOST + 1, too_many) - 1;
+        let too_many = |resolution| at(resolution).triangle_count() > MAX_TRIANGLES;
+        let finest = first(COARSEST + 1, MAX + 1, too_many) - 1;
         // A cone's deviation is not monotone, as rings are added one by one; its rim's is.
         let start = first(COARSEST, finest, |n| at(n).falling_deviation() <= deviation);
         let resolution = (start..=finest).find(|&n| at(n).deviation() <= deviation);
@@ -417,7 +417,7 @@ mod tests {
     #[test]
     fn a_tolerance_gets_the_coarsest_resolution_that_keeps_it() {
         for shape in round_shapes() {
-            let mut finer = MOST;
+            let mut finer = MAX;
             for exponent in -24..=4 {
                 let deviation = 10f64.powf(f64::from(exponent) / 4.0);
                 let fitting = shape.within(deviation);
@@ -425,9 +425,9 @@ mod tests {
                 assert!((COARSEST..=finer).contains(&found), "{fitting:?}");
                 finer = found;
                 let at = |n| shape.clone().with_resolution(n).unwrap();
-                let finest = found == MOST || at(found + 1).triangle_count() > MOST_TRIANGLES;
+                let finest = found == MAX || at(found + 1).triangle_count() > MAX_TRIANGLES;
                 assert!(fitting.deviation() <= deviation || finest, "{fitting:?}");
-                assert!(fitting.triangle_count() <= MOST_TRIANGLES, "{fitting:?}");
+                assert!(fitting.triangle_count() <= MAX_TRIANGLES, "{fitting:?}");
                 // Those all but as fine one by one, the others here and there.
                 let step = |n: u32| if found - n < 40 { 1 } else { 1 + n / 8 };
                 let mut coarser = COARSEST;
@@ -448,9 +448,9 @@ mod tests {
                 let fitting = shape.within(deviation);
                 let found = resolution(&fitting).unwrap();
                 let next = shape.clone().with_resolution(found + 1);
-                let no_finer = next.map_or(true, |next| next.triangle_count() > MOST_TRIANGLES);
+                let no_finer = next.map_or(true, |next| next.triangle_count() > MAX_TRIANGLES);
                 assert!(no_finer, "{fitting:?}");
-                assert!(fitting.triangle_count() <= MOST_TRIANGLES, "{fitting:?}");
+                assert!(fitting.triangle_count() <= MAX_TRIANGLES, "{fitting:?}");
             }
         }
     }

@@ -113,7 +113,7 @@ impl Cone {
     const COLUMNS: u32 = 24;
 
     /// The fewest segments near the tip, where they can be few because they are small.
-    const FEWEST_SEGMENTS: u64 = 8;
+    const MIN_SEGMENTS: u64 = 8;
 
     pub(super) fn surface(&self) -> Result<Surface, ShapeError> {
         revolve(&self.profile())
@@ -139,7 +139,7 @@ impl Cone {
                     0 => 0,
                     _ => (around * k)
                         .div_ceil(bands)
-                        .max(Self::FEWEST_SEGMENTS.min(around)),
+                        .max(Self::MIN_SEGMENTS.min(around)),
                 },
             }
         });

@@ -71,33 +71,33 @@ impl JsonSchema for Length {
 }
 
 /// The largest [`Count`]. A full turn in as many segments is a tenth of a degree a segment.
-pub(super) const MOST: u32 = 4096;
+pub(super) const MAX: u32 = 4096;
 
-/// A whole number from `LEAST` to 4096; `DEFAULT` where a field that may be absent is absent.
+/// A whole number from `MIN` to 4096; `DEFAULT` where a field that may be absent is absent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(transparent)]
-pub struct Count<const LEAST: u32, const DEFAULT: u32>(u32);
+pub struct Count<const MIN: u32, const DEFAULT: u32>(u32);
 
-impl<const LEAST: u32, const DEFAULT: u32> Count<LEAST, DEFAULT> {
+impl<const MIN: u32, const DEFAULT: u32> Count<MIN, DEFAULT> {
     /// The count `value`.
     ///
     /// # Errors
     ///
-    /// Less than `LEAST` or more than 4096.
+    /// Less than `MIN` or more than 4096.
     pub fn new(value: u32) -> Result<Self, ShapeError> {
         Self::named("count", value)
     }
 
     /// The count `value`, with the name that an error calls it by.
     pub(super) fn named(name: &'static str, value: u32) -> Result<Self, ShapeError> {
-        if (LEAST..=MOST).contains(&value) {
+        if (MIN..=MAX).contains(&value) {
             Ok(Self(value))
         } else {
             Err(ShapeError::Count {
                 name,
                 value,
-                least: LEAST,
-                most: MOST,
+                least: MIN,
+                most: MAX,
             })
         }
     }
@@ -108,27 +108,27 @@ impl<const LEAST: u32, const DEFAULT: u32> Count<LEAST, DEFAULT> {
     }
 }
 
-impl<const LEAST: u32, const DEFAULT: u32> Default for Count<LEAST, DEFAULT> {
+impl<const MIN: u32, const DEFAULT: u32> Default for Count<MIN, DEFAULT> {
     fn default() -> Self {
-        const { assert!(LEAST <= DEFAULT && DEFAULT <= MOST) };
+        const { assert!(MIN <= DEFAULT && DEFAULT <= MAX) };
         Self(DEFAULT)
     }
 }
 
-impl<'de, const LEAST: u32, const DEFAULT: u32> Deserialize<'de> for Count<LEAST, DEFAULT> {
+impl<'de, const MIN: u32, const DEFAULT: u32> Deserialize<'de> for Count<MIN, DEFAULT> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(CountVisitor)
     }
 }
 
 /// Reads a [`Count`]; its own, so that an error names the limits for whatever is there instead.
-struct CountVisitor<const LEAST: u32, const DEFAULT: u32>;
+struct CountVisitor<const MIN: u32, const DEFAULT: u32>;
 
-impl<const LEAST: u32, const DEFAULT: u32> Visitor<'_> for CountVisitor<LEAST, DEFAULT> {
-    type Value = Count<LEAST, DEFAULT>;
+impl<const MIN: u32, const DEFAULT: u32> Visitor<'_> for CountVisitor<MIN, DEFAULT> {
+    type Value = Count<MIN, DEFAULT>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a whole number from {LEAST} to {MOST}")
+        write!(f, "a whole number from {MIN} to {MAX}")
     }
 
     fn visit_u64<E: de::Error>(self, value: u64) -> Result<Self::Value, E> {
@@ -139,9 +139,9 @@ impl<const LEAST: u32, const DEFAULT: u32> Visitor<'_> for CountVisitor<LEAST, D
     }
 }
 
-impl<const LEAST: u32, const DEFAULT: u32> JsonSchema for Count<LEAST, DEFAULT> {
+impl<const MIN: u32, const DEFAULT: u32> JsonSchema for Count<MIN, DEFAULT> {
     fn schema_name() -> Cow<'static, str> {
-        format!("Count{LEAST}Default{DEFAULT}").into()
+        format!("Count{MIN}Default{DEFAULT}").into()
     }
 
     fn inline_schema() -> bool {
@@ -149,7 +149,7 @@ impl<const LEAST: u32, const DEFAULT: u32> JsonSchema for Count<LEAST, DEFAULT> 
     }
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "type": "integer", "minimum": LEAST, "maximum": MOST })
+        json_schema!({ "type": "integer", "minimum": MIN, "maximum": MAX })
     }
 }
 
@@ -186,7 +186,7 @@ impl<'de> Visitor<'de> for CellsVisitor {
     type Value = Cells;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a whole number from 1 to {MOST} or three of them")
+        write!(f, "a whole number from 1 to {MAX} or three of them")
     }
 
     fn visit_u64<E: de::Error>(self, value: u64) -> Result<Cells, E> {

@@ -143,7 +143,7 @@ pub(super) fn turn(direction: DVec3) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::surface::MOST_TRIANGLES;
+    use super::super::surface::MAX_TRIANGLES;
     use super::super::{Shape, witness};
     use super::*;
 
@@ -217,6 +217,6 @@ mod tests {
         let Shape::Sphere(sphere) = finest else {
             unreachable!()
         };
-        assert!(sphere.triangle_count() <= MOST_TRIANGLES);
+        assert!(sphere.triangle_count() <= MAX_TRIANGLES);
     }
 }

@@ -10,7 +10,7 @@ use super::ShapeError;
 use crate::mesh::{Mesh, MeshError};
 
 /// The most triangles that a shape is made of, so that a slip of the keyboard does not use up the memory.
-pub(super) const MOST_TRIANGLES: u64 = 20_000_000;
+pub(super) const MAX_TRIANGLES: u64 = 20_000_000;
 
 /// Vertices and triangles of a shape, as they come.
 #[derive(Default)]
@@ -26,12 +26,12 @@ impl Surface {
     ///
     /// # Errors
     ///
-    /// More than [`MOST_TRIANGLES`], so that it is refused before any work.
+    /// More than [`MAX_TRIANGLES`], so that it is refused before any work.
     pub(super) fn with_room_for(triangles: u64) -> Result<Self, ShapeError> {
-        if triangles > MOST_TRIANGLES {
+        if triangles > MAX_TRIANGLES {
             return Err(ShapeError::TooManyTriangles {
                 triangles,
-                limit: MOST_TRIANGLES,
+                limit: MAX_TRIANGLES,
             });
         }
         Ok(Self {

@@ -14,7 +14,7 @@ use crate::scene::{Attributes, Unit};
 const LOT: usize = 4096;
 
 /// However many photosurfaces share the places, each gets so many.
-const FEWEST_PLACES: usize = 100;
+const MIN_PLACES: usize = 100;
 
 /// The largest error found on the photosurfaces of a placed scene.
 #[derive(Clone, Copy, Debug, Default)]
@@ -78,11 +78,7 @@ pub(super) fn measure(
             let here = photosurface.facts.triangles;
             let places = (samples as f64 * here as f64 / triangles as f64).ceil() as usize;
             // Where there is no triangle there is no place.
-            let places = if here == 0 {
-                0
-            } else {
-                places.max(FEWEST_PLACES)
-            };
+            let places = if here == 0 { 0 } else { places.max(MIN_PLACES) };
             let found = of_one(&photosurface, &view, surface.as_ref(), places);
             worst = Measured {
                 length: worst.length.max(found.length),

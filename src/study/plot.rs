@@ -24,7 +24,7 @@ use crate::study::{CostStudy, Made, MeshCost, RayCost};
 const FINER: u32 = 4;
 
 /// What is smaller has no room for two rows of curves beside their words, what is larger no memory.
-const LEAST_SIZE: (u32, u32) = (640, 480);
+const MIN_SIZE: (u32, u32) = (640, 480);
 const LARGEST_SIDE: u32 = 8192;
 
 // Told apart by everyone, also where red and green are one: M. Okabe, K. Ito, *Color Universal Design* (2008).
@@ -40,8 +40,8 @@ pub enum PlotError {
     /// Too small to read or too large to hold.
     #[error(
         "the plot is {0} x {1} pixels, expected at least {least_width} x {least_height} and at most {LARGEST_SIDE} each way",
-        least_width = LEAST_SIZE.0,
-        least_height = LEAST_SIZE.1
+        least_width = MIN_SIZE.0,
+        least_height = MIN_SIZE.1
     )]
     Size(u32, u32),
     /// Every tolerance needs more triangles than were allowed, and no picture has an error.
@@ -69,7 +69,7 @@ impl PlotSize {
     ///
     /// Less than 640 by 480, or more than 8192 either way.
     pub fn new(width: u32, height: u32) -> Result<Self, PlotError> {
-        let sides = [(width, LEAST_SIZE.0), (height, LEAST_SIZE.1)];
+        let sides = [(width, MIN_SIZE.0), (height, MIN_SIZE.1)];
         let fits = |(side, least)| (least..=LARGEST_SIDE).contains(&side);
         match sides.into_iter().all(fits) {
             true => Ok(Self { width, height }),

@@ -11,7 +11,7 @@ use crate::pipeline::{PlacedScene, SurfaceOptions, Unrefined};
 use crate::tessellate::{Allowance, triangle_gap};
 
 /// Deeper than this nothing is divided: what an observer touches may have a gap after any number of halvings.
-const MOST_LEVELS: u32 = 40;
+const MAX_LEVELS: u32 = 40;
 
 /// What uniform subdivision takes for the same bound.
 ///
@@ -109,7 +109,7 @@ fn levels(unrefined: &Unrefined<'_>, mesh: &Mesh) -> u32 {
 
 fn levels_of(offsets: [DVec3; 3], allowance: &Allowance, done: u32) -> u32 {
     let [a, b, c] = offsets;
-    if done == MOST_LEVELS || triangle_gap(a, b, c) <= allowance.between(&offsets) {
+    if done == MAX_LEVELS || triangle_gap(a, b, c) <= allowance.between(&offsets) {
         return done;
     }
     let pieces = quarters(offsets).into_iter();

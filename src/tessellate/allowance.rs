@@ -6,7 +6,7 @@ use crate::light_cone::View;
 
 /// What part of an angle the gap gets where other errors take more than there is; the certificate tells. Without it
 /// they would ask for triangles of no size at all.
-const LEAST_SHARE: f64 = 0.1;
+const MIN_SHARE: f64 = 0.1;
 
 /// The largest gap `e`, in the rest frame before the factor `gamma beta`, that an edge or a triangle may
 /// have.
@@ -65,7 +65,7 @@ impl Allowance {
                 least,
             } => {
                 let whole = nearest(view, offsets) * share;
-                (whole - less).max(LEAST_SHARE * whole).max(*least)
+                (whole - less).max(MIN_SHARE * whole).max(*least)
             }
         }
     }
@@ -81,7 +81,7 @@ impl Allowance {
                 least,
             } => {
                 let whole = nearest(view, offsets) * share;
-                whole - less < (LEAST_SHARE * whole).max(*least)
+                whole - less < (MIN_SHARE * whole).max(*least)
             }
         }
     }

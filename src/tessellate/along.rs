@@ -30,7 +30,7 @@ impl Along {
 
 /// A point of a plane, and what is known of it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Spot {
+pub(super) struct PlanePoint {
     /// Offset from the observer.
     pub(super) offset: DVec3,
     /// Its length.
@@ -39,7 +39,7 @@ pub(super) struct Spot {
     pub(super) place: DVec2,
 }
 
-impl Spot {
+impl PlanePoint {
     pub(super) fn new(plane: &Plane, offset: DVec3) -> Self {
         Self {
             offset,
@@ -64,8 +64,11 @@ impl Spot {
 /// Distances to `2.5 u`, dot products to `3 u r`, the difference, the length of `G` and what is made of it to `4 u r`,
 /// with `u` half an epsilon: less than `8 epsilon r` together, which is added. So where a gap is `r / 1e9` the bound
 /// is above it by about a millionth of it.
-pub(super) fn gap_along(plane: &Plane, [a, b, c]: [&Spot; 3]) -> Along {
-    if ![a, b, c].iter().all(|spot| PLAIN.contains(&spot.distance)) {
+pub(super) fn gap_along(plane: &Plane, [a, b, c]: [&PlanePoint; 3]) -> Along {
+    if ![a, b, c]
+        .iter()
+        .all(|point| PLAIN.contains(&point.distance))
+    {
         return Along::UNKNOWN;
     }
     let (to_b, to_c) = (b.place - a.place, c.place - a.place);
@@ -101,7 +104,7 @@ pub(super) fn gap_along(plane: &Plane, [a, b, c]: [&Spot; 3]) -> Along {
         let toward = p.offset * (q.distance + rho) + q.offset * (p.distance + rho);
         toward * (1.0 / toward.length())
     };
-    let excess = |spot: &Spot| spot.distance - direction.dot(spot.offset);
+    let excess = |point: &PlanePoint| point.distance - direction.dot(point.offset);
     let (of_p, of_q, of_other) = (excess(p), excess(q), excess(other));
     let largest = of_p.max(of_q).max(of_other);
     // At the worst place the gap is the mean of what it is between.
@@ -143,7 +146,7 @@ mod tests {
 
     fn along(corners: [DVec3; 3]) -> Option<Along> {
         let plane = Plane::new(corners)?;
-        let [a, b, c] = corners.map(|corner| Spot::new(&plane, corner));
+        let [a, b, c] = corners.map(|corner| PlanePoint::new(&plane, corner));
         Some(gap_along(&plane, [&a, &b, &c]))
     }
 
@@ -183,7 +186,7 @@ mod tests {
             let Some(plane) = Plane::new(turned) else {
                 continue;
             };
-            let [a, b, c] = corners.map(|corner| Spot::new(&plane, corner));
+            let [a, b, c] = corners.map(|corner| PlanePoint::new(&plane, corner));
             let bound = gap_along(&plane, [&a, &b, &c]).bound;
             let gap = triangle_gap(corners[0], corners[1], corners[2]);
             assert!(bound >= gap * (1.0 - 1e-10), "{corners:?}: {bound} {gap}");
@@ -197,7 +200,8 @@ mod tests {
         let corners = [DVec3::X, DVec3::Y, DVec3::Z];
         let plane = Plane::new(corners).unwrap();
         for place in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY, DVec3::X * 1e200] {
-            let [a, b, c] = [corners[0], corners[1], place].map(|corner| Spot::new(&plane, corner));
+            let [a, b, c] =
+                [corners[0], corners[1], place].map(|corner| PlanePoint::new(&plane, corner));
             let along = gap_along(&plane, [&a, &b, &c]);
             assert!(along.bound == f64::INFINITY && !along.is_sharp, "{place}");
         }

@@ -5,14 +5,14 @@ use glam::{DVec2, DVec3};
 use super::Allowance;
 
 /// More points than this are not spent on a chart that does not fit.
-const MOST_MORE: f64 = 1e6;
+const MAX_MORE: f64 = 1e6;
 
 /// So many times the power of a chart over what is allowed of a distance: all around, over forty powers of `e`, and that
 /// five times.
 const POINTS_OF_POWER: f64 = 500.0;
 
 /// Steps to find a place of a chart with a power: nearly always less than ten.
-const MOST_STEPS: usize = 100;
+const MAX_STEPS: usize = 100;
 
 /// The plane of a triangle, with coordinates from the point nearest to the observer.
 #[derive(Clone, Copy, Debug)]
@@ -111,7 +111,7 @@ const STRETCHED: f64 = 1.4;
 
 /// A chart that does not fit is followed by one with so many times the power, up to this one.
 const MORE_POWER: f64 = 2.0;
-const MOST_POWER: f64 = 1.0;
+const MAX_POWER: f64 = 1.0;
 
 /// A chart that does not fit is followed by one flatter by this factor where all gaps are alike.
 const FLATTER: f64 = 4.0;
@@ -146,7 +146,7 @@ impl Chart {
                 let flatter = MORE_POWER.powi(flattening - before);
                 let power = (8.0 * plane.share(allowance)).sqrt() / STRETCHED * flatter;
                 Self {
-                    power: power.min(MOST_POWER),
+                    power: power.min(MAX_POWER),
                     ..sky
                 }
             }
@@ -191,7 +191,7 @@ impl Chart {
         let target = radius.ln() - power * (height / reach).ln();
         let (mut low, mut high) = (0.0, (2.0 * reach / height).asinh());
         let mut t: f64 = 0.5 * high;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             let excess = (0.5 * t).tanh().ln() + power * t.cosh().ln() - target;
             match excess > 0.0 {
                 true => high = t,
@@ -222,7 +222,7 @@ impl Chart {
         } else {
             0.0
         };
-        share.min(MOST_MORE) as usize
+        share.min(MAX_MORE) as usize
     }
 
     /// The square of the metric's factor: lengths in the chart times it are lengths in which a gap `e` is an

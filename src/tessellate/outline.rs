@@ -11,7 +11,7 @@ use super::{Allowance, minimum_triangles, triangle_gap};
 use crate::mesh::Mesh;
 
 /// A single triangle is never given more points than this many times what theory asks for, and a few.
-const MOST_POINTS: f64 = 16.0;
+const MAX_TIMES_MINIMUM: f64 = 16.0;
 
 /// More points than this inside one triangle are a tolerance that cannot be meant: behind a fast observer the fewest
 /// triangles that theory allows go with `gamma`.
@@ -190,8 +190,8 @@ impl Need {
     }
 
     /// Of points inside that are spent on it, even without any limit.
-    pub(super) fn most_points(&self, boundary: usize) -> usize {
-        let most = MOST_POINTS * (self.minimum + boundary as f64) + 64.0;
+    pub(super) fn max_points(&self, boundary: usize) -> usize {
+        let most = MAX_TIMES_MINIMUM * (self.minimum + boundary as f64) + 64.0;
         most.min(MAX_POINTS) as usize
     }
 }

@@ -4,7 +4,7 @@
 const STEP_BITS: u32 = 5;
 
 /// Smaller flaws are all alike.
-const LEAST: f32 = 1.0 / 16_777_216.0;
+const MIN: f32 = 1.0 / 16_777_216.0;
 
 /// So are those larger than that by so many powers of two.
 const OCTAVES: usize = 32;
@@ -22,13 +22,13 @@ pub(super) struct Queue {
     filled: [u64; BUCKETS / 64],
     /// The first entry of each bucket.
     first: [u32; BUCKETS],
-    entries: Vec<Entry>,
+    entries: Vec<Queued>,
     /// The first of the entries that hold nothing.
     free: u32,
 }
 
 #[derive(Clone, Copy)]
-struct Entry {
+struct Queued {
     task: Task,
     next: u32,
 }
@@ -53,7 +53,7 @@ impl Queue {
 
     pub(super) fn push(&mut self, task: Task) {
         let bucket = bucket(task.flaw);
-        let entry = Entry {
+        let entry = Queued {
             task,
             next: self.first[bucket],
         };
@@ -76,7 +76,7 @@ impl Queue {
         let word = self.filled.iter().position(|&word| word != 0)?;
         let bucket = 64 * word + self.filled[word].trailing_zeros() as usize;
         let index = self.first[bucket];
-        let Entry { task, next } = self.entries[index as usize];
+        let Queued { task, next } = self.entries[index as usize];
         self.entries[index as usize].next = self.free;
         self.free = index;
         self.first[bucket] = next;
@@ -90,7 +90,7 @@ impl Queue {
 /// The bits of positive floats are in the order of the floats.
 fn bucket(flaw: f32) -> usize {
     let step = |flaw: f32| (flaw.to_bits() >> (f32::MANTISSA_DIGITS - 1 - STEP_BITS)) as usize;
-    (step(flaw.max(LEAST)) - step(LEAST)).min(BUCKETS - 1)
+    (step(flaw.max(MIN)) - step(MIN)).min(BUCKETS - 1)
 }
 
 #[cfg(test)]

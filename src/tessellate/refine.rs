@@ -75,7 +75,7 @@ pub(crate) fn refine(
                     observer,
                     &points,
                     &outline.allowance,
-                    need.most_points(points.len()),
+                    need.max_points(points.len()),
                     Grant { granted, is_last },
                 );
                 Outcome { boundary, pieces }

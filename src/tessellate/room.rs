@@ -7,7 +7,7 @@ const TURNS: u32 = 2;
 const BEYOND: f64 = 4.0;
 
 /// More than this is not predicted of any triangle.
-const MOST_PREDICTED: f64 = 1e15;
+const MAX_PREDICTED: f64 = 1e15;
 
 /// A number of points shared by triangles: first by what was predicted of each; what some leave goes to those that were
 /// short of points, which are then divided anew.
@@ -27,10 +27,10 @@ impl Room {
     pub(super) fn new(predicted: Vec<f64>, points: u64) -> Self {
         let weight = |predicted: f64| {
             // NaN is as good as too many.
-            if predicted < MOST_PREDICTED {
+            if predicted < MAX_PREDICTED {
                 predicted + BEYOND
             } else {
-                MOST_PREDICTED
+                MAX_PREDICTED
             }
         };
         Self {

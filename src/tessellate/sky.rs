@@ -17,7 +17,7 @@ use spade::{
     mitigate_underflow,
 };
 
-use super::along::{Spot, gap_along};
+use super::along::{PlanePoint, gap_along};
 use super::chart::{Chart, Plane};
 use super::gap::triangle_gap_place;
 use super::pieces::{Corner, Pieces};
@@ -50,7 +50,7 @@ pub(super) struct Grant {
 }
 
 /// Divides the triangle between three positions, whose boundary is `boundary` (counter-clockwise, from corner 0
-/// on), until every gap is within the allowance or so many points have been added as make sense for it, `most_points`
+/// on), until every gap is within the allowance or so many points have been added as make sense for it, `max_points`
 /// and what a flatter chart takes; never more than `granted`. Where those are too few and `is_last` says that there will
 /// be no more, gaps are larger by one factor.
 pub(super) fn divide(
@@ -58,7 +58,7 @@ pub(super) fn divide(
     observer: DVec3,
     boundary: &[Corner],
     allowance: &Allowance,
-    most_points: usize,
+    max_points: usize,
     Grant { granted, is_last }: Grant,
 ) -> Pieces {
     let Some(plane) = Plane::new(positions.map(|position| position - observer)) else {
@@ -71,7 +71,7 @@ pub(super) fn divide(
             1.0 => *allowance,
             _ => allowance.times(looser),
         };
-        let limits = [most_points, granted];
+        let limits = [max_points, granted];
         let made = divide_on_sky(plane, positions, observer, boundary, &aimed, limits);
         let Some(pieces) = made else { break };
         let (is_complete, is_short) = (pieces.complete, pieces.is_short);
@@ -105,7 +105,7 @@ fn divide_on_sky(
     observer: DVec3,
     boundary: &[Corner],
     allowance: &Allowance,
-    [most_points, granted]: [usize; 2],
+    [max_points, granted]: [usize; 2],
 ) -> Option<Pieces> {
     let smallest = boundary
         .iter()
@@ -117,7 +117,7 @@ fn divide_on_sky(
             Some(front) => front,
             None => continue,
         };
-        let most = most_points + chart.points(allowance);
+        let most = max_points + chart.points(allowance);
         let is_short = front.advance(most.min(granted)) && granted < most;
         let Some(mut pieces) = front.finish() else {
             continue;
@@ -155,7 +155,7 @@ struct Front<'a> {
     allowance: &'a Allowance,
     triangulation: ConstrainedDelaunayTriangulation<Point2<f64>>,
     /// What is known of the vertices of the triangulation, which are small and stay together so.
-    spots: Vec<Spot>,
+    points_in_plane: Vec<PlanePoint>,
     /// And their weights of the triangle's corners.
     weights: Vec<DVec3>,
     tasks: Queue,
@@ -180,9 +180,9 @@ impl<'a> Front<'a> {
             observer,
             allowance,
             triangulation: ConstrainedDelaunayTriangulation::new(),
-            spots: boundary
+            points_in_plane: boundary
                 .iter()
-                .map(|corner| Spot::new(&chart.plane, corner.offset))
+                .map(|corner| PlanePoint::new(&chart.plane, corner.offset))
                 .collect(),
             weights: boundary.iter().map(|corner| corner.weights).collect(),
             tasks: Queue::new(),
@@ -191,7 +191,7 @@ impl<'a> Front<'a> {
         };
         let mut handles = Vec::with_capacity(boundary.len());
         for index in 0..boundary.len() {
-            let w = chart.place_to_chart(front.spots[index].place);
+            let w = chart.place_to_chart(front.points_in_plane[index].place);
             let handle = front.triangulation.insert(to_point(w)).ok()?;
             if handle.index() != index {
                 return None;
@@ -216,11 +216,11 @@ impl<'a> Front<'a> {
         Some(front)
     }
 
-    /// Adds points until nothing is left to do, or `most_points` have been added; whether something may be left to do.
-    fn advance(&mut self, most_points: usize) -> bool {
+    /// Adds points until nothing is left to do, or `max_points` have been added; whether something may be left to do.
+    fn advance(&mut self, max_points: usize) -> bool {
         let mut added = 0;
         let mut around = vec![];
-        while added < most_points
+        while added < max_points
             && let Some(task) = self.tasks.pop()
         {
             let (flaw, face) = self.flaws[task.face as usize];
@@ -238,7 +238,8 @@ impl<'a> Front<'a> {
                 continue;
             }
             let offset = mix(self.positions, weights) - self.observer;
-            self.spots.push(Spot::new(&self.chart.plane, offset));
+            self.points_in_plane
+                .push(PlanePoint::new(&self.chart.plane, offset));
             self.weights.push(weights);
             added += 1;
             let edges = self.triangulation.vertex(handle).out_edges();
@@ -250,7 +251,7 @@ impl<'a> Front<'a> {
                 self.consider(face, vertices);
             }
         }
-        added == most_points
+        added == max_points
     }
 
     /// Sets a task if the face has too large a gap.
@@ -275,12 +276,12 @@ impl<'a> Front<'a> {
         if self.is_outside(indices) {
             return None;
         }
-        let offsets = indices.map(|index| self.spots[index].offset);
+        let offsets = indices.map(|index| self.points_in_plane[index].offset);
         let allowed = self.allowance.between(&offsets);
         let [a, b, c] = vertices.map(|vertex| to_vec(self.triangulation.vertex(vertex).position()));
         let sides = [b - a, c - b, a - c].map(DVec2::length_squared);
-        let spots = indices.map(|index| &self.spots[index]);
-        let along = gap_along(&self.chart.plane, spots);
+        let points_in_plane = indices.map(|index| &self.points_in_plane[index]);
+        let along = gap_along(&self.chart.plane, points_in_plane);
         let is_small = along.bound <= allowed
             || !along.is_sharp && triangle_gap(offsets[0], offsets[1], offsets[2]) <= allowed;
         if is_small {
@@ -320,7 +321,7 @@ impl<'a> Front<'a> {
         }
         // Next to the boundary: where the gap is largest, or the middle where that is on the boundary itself.
         let indices = vertices.map(|vertex| vertex.index());
-        let [a, b, c] = indices.map(|index| self.spots[index].offset);
+        let [a, b, c] = indices.map(|index| self.points_in_plane[index].offset);
         let [u, v, w] = triangle_gap_place(a, b, c);
         let [a, b, c] = indices.map(|index| self.weights[index]);
         let worst = a * u + b * v + c * w;
@@ -443,10 +444,10 @@ impl<'a> Front<'a> {
             if !((b - a).perp_dot(c - a) > 0.0) {
                 return None;
             }
-            let spots = vertices.map(|vertex| &self.spots[vertex]);
-            let offsets = spots.map(|spot| spot.offset);
+            let points_in_plane = vertices.map(|vertex| &self.points_in_plane[vertex]);
+            let offsets = points_in_plane.map(|point| point.offset);
             // Most are known to be smaller than one that was met before.
-            let bound = gap_along(&self.chart.plane, spots).bound;
+            let bound = gap_along(&self.chart.plane, points_in_plane).bound;
             if !(bound <= pieces.gap && bound <= self.allowance.between(&offsets)) {
                 pieces.measure(offsets, self.allowance);
             }

@@ -12,7 +12,7 @@ use thiserror::Error;
 use super::WriteError;
 
 /// Links that are followed before they are taken to go round in circles, as on Linux.
-const MOST_LINKS: usize = 40;
+const MAX_LINKS: usize = 40;
 
 /// The place that writing to `path` would change, links followed: the same for all names of one file, also
 /// of one that does not exist yet. Says whether it could be written, without touching what may stand there:
@@ -134,7 +134,7 @@ impl Destination {
 /// Where a file that does not exist yet would come to stand; a link that leads to nothing says where.
 fn new_file(path: &Path) -> std::io::Result<PathBuf> {
     let mut path = path.to_owned();
-    for _ in 0..MOST_LINKS {
+    for _ in 0..MAX_LINKS {
         let Some(name) = path.file_name() else {
             return Err(std::io::ErrorKind::IsADirectory.into());
         };

@@ -19,7 +19,7 @@ impl Format {
     /// # Accuracy
     ///
     /// Never more than the file will have: what would fit is not refused.
-    pub fn least_size(self, placed: &PlacedScene, steps: usize) -> Result<u64, WriteError> {
+    pub fn min_size(self, placed: &PlacedScene, steps: usize) -> Result<u64, WriteError> {
         // Other shapes are made as fine as their tolerance asks for, which may be next to nothing.
         let fixed = |object: &Object| match &object.source {
             Source::Shape(shape, _) => shape.has_resolution(),
@@ -33,7 +33,7 @@ impl Format {
         let scalars = self.attributes(placed.scene()).scalars();
         match self {
             Self::Glb | Self::Gltf => {
-                let bytes = least_gltf(&parts, steps as u64, scalars);
+                let bytes = min_gltf(&parts, steps as u64, scalars);
                 let limit = u64::from(u32::MAX);
                 if self == Self::Glb && bytes > limit {
                     return Err(WriteError::TooLarge {
@@ -44,13 +44,13 @@ impl Format {
                 }
                 Ok(bytes)
             }
-            Self::Ply => least_ply(&parts, steps as u64, scalars),
+            Self::Ply => min_ply(&parts, steps as u64, scalars),
         }
     }
 }
 
 /// What differs from step to step is counted for each, what steps share once.
-fn least_gltf(parts: &[&Part], steps: u64, scalars: u64) -> u64 {
+fn min_gltf(parts: &[&Part], steps: u64, scalars: u64) -> u64 {
     let mut shared = HashSet::new();
     let mut once = |address: usize, bytes: usize| match shared.insert(address) {
         true => bytes as u64,
@@ -80,7 +80,7 @@ fn least_gltf(parts: &[&Part], steps: u64, scalars: u64) -> u64 {
     of_step.saturating_mul(steps).saturating_add(of_all)
 }
 
-fn least_ply(parts: &[&Part], steps: u64, scalars: u64) -> Result<u64, WriteError> {
+fn min_ply(parts: &[&Part], steps: u64, scalars: u64) -> Result<u64, WriteError> {
     let count = |of: fn(&Mesh) -> usize| {
         let each = parts.iter().map(|part| of(part.mesh()) as u64);
         steps.saturating_mul(each.sum())
@@ -145,20 +145,20 @@ mod tests {
         write_glb(&export, &mut glb).unwrap();
         write_ply(&export, &mut ply).unwrap();
         for (format, file, words) in [(Format::Glb, glb, 12_000), (Format::Ply, ply, 500)] {
-            let least = format.least_size(&placed, 3).unwrap();
+            let least = format.min_size(&placed, 3).unwrap();
             let rest = file.len() as u64 - least;
             assert!(rest < words, "{format:?}: {rest} bytes more than {least}");
         }
-        let [one, two] = [1, 2].map(|steps| Format::Glb.least_size(&placed, steps).unwrap());
+        let [one, two] = [1, 2].map(|steps| Format::Glb.min_size(&placed, steps).unwrap());
         let most = 1 + (u64::from(u32::MAX) - one) / (two - one);
-        assert!(Format::Glb.least_size(&placed, most as usize).is_ok());
-        assert!(Format::Glb.least_size(&placed, most as usize + 1).is_err());
-        assert!(Format::Gltf.least_size(&placed, 34_000).is_ok());
-        assert!(Format::Ply.least_size(&placed, 800_000).is_err());
+        assert!(Format::Glb.min_size(&placed, most as usize).is_ok());
+        assert!(Format::Glb.min_size(&placed, most as usize + 1).is_err());
+        assert!(Format::Gltf.min_size(&placed, 34_000).is_ok());
+        assert!(Format::Ply.min_size(&placed, 800_000).is_err());
         assert_eq!(
-            Format::Gltf.least_size(&placed, usize::MAX).unwrap(),
+            Format::Gltf.min_size(&placed, usize::MAX).unwrap(),
             u64::MAX
         );
-        assert!(Format::Ply.least_size(&placed, usize::MAX).is_err());
+        assert!(Format::Ply.min_size(&placed, usize::MAX).is_err());
     }
 }

@@ -23,7 +23,7 @@ use settings::settings;
 const CELLS: [u32; 5] = [22, 71, 224, 707, 2236];
 
 /// Of larger ones no OBJ is read: their text alone takes too long.
-const MOST_CELLS_OF_OBJ: u32 = 1000;
+const MAX_CELLS_OF_OBJ: u32 = 1000;
 
 type Writer = fn(&PlacedScene, &[Photosurface]) -> Vec<u8>;
 
@@ -99,7 +99,7 @@ fn import(criterion: &mut Criterion) {
         let mesh = grid(cells);
         let triangles = mesh.triangles().len();
         let path = |name: &str| directory.path().join(name);
-        if cells <= MOST_CELLS_OF_OBJ {
+        if cells <= MAX_CELLS_OF_OBJ {
             let (path, text) = (path("grid.obj"), obj(&mesh));
             std::fs::write(&path, &text).expect("a temporary file can be written");
             group.throughput(Throughput::Bytes(text.len() as u64));

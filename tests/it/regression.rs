@@ -762,7 +762,7 @@ fn pictures_take_any_numbers() {
     scenery.add_at_rest(&scene.objects()[0], &models[0].parts[0]);
     let part = &models[0].parts[0];
     for odd in odd {
-        scenery.add_plain(
+        scenery.add_in_view(
             &part
                 .clone()
                 .transformed(&DAffine3::from_scale(DVec3::new(odd, 1.0, 1.0))),

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{FACETS_MADE_TO_PREDICT, LEAST_FOR_GAP, Plan, shrunk};
+use super::{FACETS_MADE_TO_PREDICT, MIN_FOR_GAP, Plan, shrunk};
 use crate::material::Part;
 use crate::pipeline::SurfaceOptions;
 use crate::pipeline::mapped_mesh::MappedMesh;
@@ -78,7 +78,7 @@ impl Plan<'_> {
         });
         let reachable = match (self.aimed.unit(), self.aimed.number()) {
             (Unit::Degrees, degrees) => {
-                let least = (1.0 - LEAST_FOR_GAP) * degrees.to_radians().sin();
+                let least = (1.0 - MIN_FOR_GAP) * degrees.to_radians().sin();
                 facets.par_iter().all(|(_, offsets)| {
                     let nearest = self.nearest(*offsets);
                     let stretch = || local_stretch(&self.view, offsets.map(|o| o + observer));
@@ -90,7 +90,7 @@ impl Plan<'_> {
                         && taken <= least * self.view.seen_distance(nearest)
                 })
             }
-            _ => draft.limits.left >= LEAST_FOR_GAP * self.aimed_length,
+            _ => draft.limits.left >= MIN_FOR_GAP * self.aimed_length,
         };
         Predicted {
             // Added up in their order: the same sum for any number of threads.

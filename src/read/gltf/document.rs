@@ -15,7 +15,7 @@ use gltf::json::{Root, Value, mesh::Semantic};
 use serde::Deserialize;
 
 use super::extensions;
-use super::looks::Looks;
+use super::material_lists::MaterialLists;
 use super::mend::mend;
 use crate::read::bytes::Bytes;
 use crate::read::note::Note;
@@ -29,7 +29,7 @@ pub(super) struct Document<'a> {
     /// As many as there are nodes.
     pub(super) placements: Vec<Placement>,
     /// What surfaces look like.
-    pub(super) looks: Looks,
+    pub(super) material_lists: MaterialLists,
     /// How many animations were left out.
     pub(super) animations: usize,
     /// `None` where a buffer has neither a URI nor the binary chunk.
@@ -67,8 +67,8 @@ pub(super) fn read_document<'a>(
         None => vec![],
     };
     let mut root: Root = schema("", &value)?;
-    let looks = Looks::new(&value, std::mem::take(&mut root.extensions_required));
-    extensions::check(&root, &looks, notes)?;
+    let material_lists = MaterialLists::new(&value, std::mem::take(&mut root.extensions_required));
+    extensions::check(&root, &material_lists, notes)?;
     give_bounds(&mut root)?;
     check_references(&root)?;
 
@@ -94,7 +94,7 @@ pub(super) fn read_document<'a>(
     Ok(Document {
         root,
         placements,
-        looks,
+        material_lists,
         animations,
         buffers,
         quota: Quota::of(size),

@@ -6,7 +6,7 @@ use gltf::json::Root;
 use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::Checked;
 
-use super::looks::Looks;
+use super::material_lists::MaterialLists;
 use crate::read::ReadError;
 use crate::read::note::Note;
 use crate::read::notes::add_note;
@@ -44,17 +44,21 @@ const HARMLESS: [&str; 14] = [
 ];
 
 /// Refuses a file that cannot be read without an extension that is not known here; notes those that are
-/// not copied with the looks of surfaces.
-pub(super) fn check(root: &Root, looks: &Looks, notes: &mut Vec<Note>) -> Result<(), ReadError> {
+/// not copied with how surfaces look.
+pub(super) fn check(
+    root: &Root,
+    material_lists: &MaterialLists,
+    notes: &mut Vec<Note>,
+) -> Result<(), ReadError> {
     let heeded = [QUANTIZATION, INSTANCING, VISIBILITY];
-    for name in &looks.required {
+    for name in &material_lists.required {
         let known = heeded.contains(&name.as_str()) || HARMLESS.contains(&name.as_str());
         if !known && !name.starts_with("KHR_materials_") {
             return Err(ReadError::Extension { name: name.clone() });
         }
     }
-    let carried = looks.extensions();
-    for name in root.extensions_used.iter().chain(&looks.required) {
+    let carried = material_lists.extensions();
+    for name in root.extensions_used.iter().chain(&material_lists.required) {
         let dealt_with = heeded.iter().chain(&MESHOPT).chain([&DRACO, &LIGHTS]);
         if !carried.contains(name) && !dealt_with.into_iter().any(|known| known == name) {
             let name = name.clone();

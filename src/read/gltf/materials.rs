@@ -80,7 +80,7 @@ impl<'a> Materials<'a> {
         notes: &mut Vec<Note>,
     ) -> Result<Material, ReadError> {
         let place = format!("materials[{index}]");
-        let mut properties = self.document.looks.materials[index].clone();
+        let mut properties = self.document.material_lists.materials[index].clone();
         for factor in clamp_factors(&mut properties) {
             let place = place.clone();
             add_note(notes, Note::FactorClamped { place, factor });
@@ -101,7 +101,7 @@ impl<'a> Materials<'a> {
         });
         let material = Material::new(properties, textures);
         let material = material.map_err(|problem| ReadError::Material { place, problem })?;
-        let required = self.document.looks.required.iter();
+        let required = self.document.material_lists.required.iter();
         // A texture without a picture for everybody needs the extension that brings its own.
         let alone = material.textures().iter().filter(|t| t.image().is_none());
         let needed: Vec<String> = alone
@@ -122,12 +122,12 @@ impl<'a> Materials<'a> {
         if let Some(texture) = self.textures.get(&place) {
             return Ok(texture.clone());
         }
-        let looks = &self.document.looks;
-        let mut properties = looks.textures.get(place).ok_or(NoSuch)?.clone();
+        let material_lists = &self.document.material_lists;
+        let mut properties = material_lists.textures.get(place).ok_or(NoSuch)?.clone();
         let sampler = properties
             .as_object_mut()
             .and_then(|texture| texture.shift_remove("sampler"))
-            .and_then(|sampler| looks.samplers.get(sampler.as_u64()? as usize));
+            .and_then(|sampler| material_lists.samplers.get(sampler.as_u64()? as usize));
         let mut images = vec![];
         let mut has_source = false;
         map_sources(&mut properties, |extension, source| {
@@ -191,7 +191,7 @@ impl<'a> Materials<'a> {
 
     /// What to call an image in notes.
     fn name_of_image(&self, index: usize) -> String {
-        let source = self.document.looks.images.get(index);
+        let source = self.document.material_lists.images.get(index);
         let word = |key: &str| source.and_then(|source| source.get(key)?.as_str());
         let name = word("name").or_else(|| word("uri"));
         let name = name.filter(|name| !name.starts_with("data:"));
@@ -200,7 +200,7 @@ impl<'a> Materials<'a> {
 
     /// An image, and the name of the format that it had, if that was another; or why it cannot be had.
     fn read_image(&mut self, index: usize) -> Result<(Image, Option<&'static str>), String> {
-        let source = self.document.looks.images.get(index);
+        let source = self.document.material_lists.images.get(index);
         let mut properties = source.ok_or("there is no such image")?.clone();
         let object = properties.as_object_mut().ok_or("it is not an object")?;
         let uri = object.shift_remove("uri");

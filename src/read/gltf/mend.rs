@@ -103,13 +103,13 @@ fn make_whole_numbers(value: &mut Value, names: &[&str]) {
 
 fn make_whole(value: &mut Value) {
     // Beyond this not every whole number is an `f64`.
-    const MOST: f64 = (1u64 << 53) as f64;
+    const MAX: f64 = (1u64 << 53) as f64;
     if !value.is_f64() {
         return;
     }
     if let Some(number) = value.as_f64()
         && number.fract() == 0.0
-        && (0.0..=MOST).contains(&number)
+        && (0.0..=MAX).contains(&number)
     {
         *value = Value::from(number as u64);
     }

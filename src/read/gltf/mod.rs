@@ -6,7 +6,7 @@ mod document;
 mod extensions;
 mod extras;
 mod instances;
-mod looks;
+mod material_lists;
 mod materials;
 mod mend;
 mod model;

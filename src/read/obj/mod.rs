@@ -5,8 +5,8 @@ mod model;
 mod mtl;
 mod mtl_map;
 mod mtl_pack;
+mod ordinary;
 mod packing;
-mod plain;
 mod polygon;
 
 pub(super) use model::read_obj_bytes;

@@ -10,7 +10,7 @@ use serde_json::json;
 use super::lines::{Faces, Statements, read_statements};
 use super::mtl::read_library;
 use super::mtl_map::Pictures;
-use super::plain::read_plain;
+use super::ordinary::read_ordinary;
 use super::polygon::triangulate;
 use crate::effects::linear_of_srgb;
 use crate::material::{Material, Model, Part};
@@ -36,7 +36,7 @@ pub(in crate::read) fn read_obj_bytes(
     folder: Folder,
     default_name: &str,
 ) -> Result<(Model, Findings), ReadError> {
-    let file = match read_plain(bytes) {
+    let file = match read_ordinary(bytes) {
         Some(file) => file,
         None => read_statements(bytes)?,
     };

@@ -29,8 +29,8 @@ const BUMPS: [&str; 2] = ["map_Bump", "bump"];
 /// Roughness of what says nothing about it: hardly any gloss.
 const MATT: f64 = 0.9;
 
-/// What a library says of one material: the last of each statement.
-struct Entry {
+/// The statements of a library about one material: the last one of each kind.
+struct LibraryMaterial {
     /// In the bytes of the file.
     name: Vec<u8>,
     /// By their names in lower case.
@@ -53,7 +53,7 @@ pub(super) fn read_library(
             return Ok(vec![]);
         }
     };
-    let (entries, malformed) = entries(&bytes);
+    let (entries, malformed) = library_materials(&bytes);
     if !malformed.is_empty() {
         let note = Note::MaterialLines {
             path: path.to_owned(),
@@ -74,8 +74,8 @@ pub(super) fn read_library(
 }
 
 /// The materials of a library, the last of each name, and the numbers of the lines that make no sense.
-fn entries(file: &[u8]) -> (Vec<Entry>, Vec<usize>) {
-    let mut entries: Vec<Entry> = vec![];
+fn library_materials(file: &[u8]) -> (Vec<LibraryMaterial>, Vec<usize>) {
+    let mut entries: Vec<LibraryMaterial> = vec![];
     let mut numbers: HashMap<Vec<u8>, usize> = HashMap::new();
     let mut current = None;
     let mut malformed = vec![];
@@ -96,7 +96,7 @@ fn entries(file: &[u8]) -> (Vec<Entry>, Vec<usize>) {
             _ if !makes_sense => malformed.push(index + 1),
             ("newmtl", _) => {
                 let number = *numbers.entry(name.to_vec()).or_insert(entries.len());
-                let entry = Entry {
+                let entry = LibraryMaterial {
                     name: name.to_vec(),
                     statements: BTreeMap::new(),
                 };
@@ -116,7 +116,7 @@ fn entries(file: &[u8]) -> (Vec<Entry>, Vec<usize>) {
     (entries, malformed)
 }
 
-impl Entry {
+impl LibraryMaterial {
     fn material(
         &self,
         folder: &Path,
@@ -393,7 +393,7 @@ mod tests {
     fn read(library: &str) -> (Material, Vec<String>) {
         let files = Folder::new("nowhere".as_ref());
         let mut notes = vec![];
-        let (entries, _) = entries(library.as_bytes());
+        let (entries, _) = library_materials(library.as_bytes());
         let mut pictures = Pictures::new(&files);
         let material = entries[0].material("nowhere".as_ref(), &mut pictures, &mut notes);
         let notes = notes.iter().map(ToString::to_string).collect();
@@ -404,7 +404,7 @@ mod tests {
     fn malformed_lines_are_left_out_and_named() {
         let text =
             "newmtl a\nKd 1 0.5\n Kd 1 0.5 0\nKa 1\nd x\nNs 10\nnewmtl\nd -halo 0.5\nKe 2 # two\n";
-        let (entries, malformed) = entries(text.as_bytes());
+        let (entries, malformed) = library_materials(text.as_bytes());
         assert_eq!(malformed, [2, 5, 7, 9]);
         assert_eq!(entries.len(), 1);
         assert_eq!(entries[0].color("Kd"), Some([1.0, 0.5, 0.0]));

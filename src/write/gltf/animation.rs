@@ -7,7 +7,7 @@ use gltf::json::validation::Checked;
 use gltf::json::{self, Index, animation};
 use serde_json::{Value, json};
 
-use super::document::{Document, Use};
+use super::document::{AccessorRole, Document};
 use super::file::GltfFile;
 use super::tracks::{Keys, Tracks};
 use crate::mesh::Mesh;
@@ -188,7 +188,12 @@ fn key_frames<const N: usize>(
     values: &[[f32; N]],
 ) -> Result<Index<json::Accessor>, WriteError> {
     let bounds = Bounds::of_all(values.len(), |index| values[index]);
-    document.vectors(values, |_, value| *value, Some(bounds), Use::Keys)
+    document.vectors(
+        values,
+        |_, value| *value,
+        Some(bounds),
+        AccessorRole::KeyFrames,
+    )
 }
 
 /// The name without its step.

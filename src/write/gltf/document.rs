@@ -79,13 +79,13 @@ pub(super) struct Document<'a> {
 /// Keeps something at its address.
 type Keep = Box<dyn std::any::Any + Send>;
 
-/// What numbers are, to those who read them.
+/// How a reader uses the numbers of an accessor.
 #[derive(Clone, Copy)]
-pub(super) enum Use {
+pub(super) enum AccessorRole {
     /// One for each vertex.
-    Vertices,
+    VertexAttribute,
     /// Key frames.
-    Keys,
+    KeyFrames,
 }
 
 impl<'a> Document<'a> {
@@ -149,11 +149,11 @@ impl<'a> Document<'a> {
         values: &[T],
         vector: impl Fn(usize, &T) -> [f32; N] + Sync,
         bounds: Option<Bounds<N>>,
-        of_what: Use,
+        of_what: AccessorRole,
     ) -> Result<Index<json::Accessor>, WriteError> {
         let target = match of_what {
-            Use::Vertices => Some(buffer::Target::ArrayBuffer),
-            Use::Keys => None,
+            AccessorRole::VertexAttribute => Some(buffer::Target::ArrayBuffer),
+            AccessorRole::KeyFrames => None,
         };
         let shape = match N {
             1 => accessor::Type::Scalar,

@@ -14,7 +14,7 @@ use gltf::json::validation::Checked;
 use gltf::json::{self, Index, mesh::Semantic};
 use serde_json::{Value, json};
 
-use super::document::{Document, Use};
+use super::document::{AccessorRole, Document};
 use super::materials::Materials;
 use crate::material::Part;
 use crate::mesh::Mesh;
@@ -171,11 +171,17 @@ impl<'a> GltfFile<'a> {
         let document = &mut self.document;
         let local = |_: usize, place: &DVec3| packing.local(*place);
         let bounds = Some(packing.local_bounds());
-        let places = document.vectors(mesh.positions(), local, bounds, Use::Vertices)?;
+        let places = document.vectors(
+            mesh.positions(),
+            local,
+            bounds,
+            AccessorRole::VertexAttribute,
+        )?;
         let mut attributes = vec![(Semantic::Positions, places)];
         if let Some(normals) = mesh.normals() {
             let direction = |_: usize, normal: &DVec3| unit_or_up(*normal).as_vec3().to_array();
-            let accessor = document.vectors(normals, direction, None, Use::Vertices)?;
+            let accessor =
+                document.vectors(normals, direction, None, AccessorRole::VertexAttribute)?;
             attributes.push((Semantic::Normals, accessor));
         }
         if let Some(tangents) = mesh.tangents() {
@@ -183,13 +189,14 @@ impl<'a> GltfFile<'a> {
                 let unit = unit_or_up(tangent.truncate());
                 unit.extend(tangent.w).as_vec4().to_array()
             };
-            let accessor = document.vectors(tangents, direction, None, Use::Vertices)?;
+            let accessor =
+                document.vectors(tangents, direction, None, AccessorRole::VertexAttribute)?;
             attributes.push((Semantic::Tangents, accessor));
         }
         for (set, coordinates) in (0..).zip(mesh.texture_coordinates()) {
             let accessor = document.shared(coordinates, |document| {
                 let values = |_: usize, place: &Vec2| place.to_array();
-                document.vectors(coordinates, values, None, Use::Vertices)
+                document.vectors(coordinates, values, None, AccessorRole::VertexAttribute)
             })?;
             attributes.push((Semantic::TexCoords(set), accessor));
         }
@@ -201,7 +208,12 @@ impl<'a> GltfFile<'a> {
         }
         for scalar in scalars {
             let number = |vertex: usize, _: &DVec3| [scalar.at(vertex) as f32];
-            let accessor = document.vectors(mesh.positions(), number, None, Use::Vertices)?;
+            let accessor = document.vectors(
+                mesh.positions(),
+                number,
+                None,
+                AccessorRole::VertexAttribute,
+            )?;
             let name = scalar.name.to_ascii_uppercase();
             attributes.push((Semantic::Extras(name), accessor));
         }
@@ -299,19 +311,20 @@ fn morph_target(
     let normals = first.normals().zip(step.normals());
     let normals = normals.map(|(from, to)| {
         let difference = |vertex: usize, to: &DVec3| turned(from[vertex], *to);
-        document.vectors(to, difference, None, Use::Vertices)
+        document.vectors(to, difference, None, AccessorRole::VertexAttribute)
     });
     let normals = normals.transpose()?;
     let tangents = first.tangents().zip(step.tangents());
     let tangents = tangents.map(|(from, to)| {
         let difference = |vertex: usize, to: &DVec4| turned(from[vertex].truncate(), to.truncate());
-        document.vectors(to, difference, None, Use::Vertices)
+        document.vectors(to, difference, None, AccessorRole::VertexAttribute)
     });
     let tangents = tangents.transpose()?;
     let (from, to) = (first.positions(), step.positions());
     let difference = |vertex: usize, to: &DVec3| packing.difference(from[vertex], *to);
     let bounds = Bounds::of_all(to.len(), |vertex| difference(vertex, &to[vertex]));
-    let positions = document.vectors(to, difference, Some(bounds), Use::Vertices)?;
+    let positions =
+        document.vectors(to, difference, Some(bounds), AccessorRole::VertexAttribute)?;
     Ok(json::mesh::MorphTarget {
         positions: Some(positions),
         normals,

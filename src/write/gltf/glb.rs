@@ -77,7 +77,7 @@ pub(super) fn check_size(bytes: u64) -> Result<(), WriteError> {
 }
 
 /// The room that a JSON takes by itself.
-pub(super) fn least_room(json: &Json) -> u64 {
+pub(super) fn min_room(json: &Json) -> u64 {
     json.len().next_multiple_of(4)
 }
 
@@ -121,7 +121,7 @@ pub(super) struct InPlace<'a> {
 }
 
 /// No more room than this is left for the JSON of meshes, however many are expected: half of all that a GLB can have.
-const MOST_ROOM: f64 = (1_u64 << 31) as f64;
+const MAX_ROOM: f64 = (1_u64 << 31) as f64;
 
 impl<'a> InPlace<'a> {
     pub(super) fn new(file: &'a mut File, expected: usize) -> Self {
@@ -145,7 +145,7 @@ impl<'a> InPlace<'a> {
             (0, _) => self.reserve.for_each as f64,
             (meshes, bytes) => ROOM_TO_GROW * bytes as f64 / meshes as f64,
         };
-        let of_all = (for_each * self.expected as f64).min(MOST_ROOM);
+        let of_all = (for_each * self.expected as f64).min(MAX_ROOM);
         self.reserve.once + of_all as u64
     }
 
@@ -155,7 +155,7 @@ impl<'a> InPlace<'a> {
     ///
     /// More than 4 GiB, or the file cannot be read or written.
     pub(super) fn finish(mut self, json: Json, bytes: u64) -> Result<(), WriteError> {
-        let taken = least_room(&json);
+        let taken = min_room(&json);
         self.write_all(padding(bytes))?;
         if let Some(room) = self.room {
             self.file.write_all(&self.held)?;

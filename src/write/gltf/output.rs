@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use tempfile::SpooledTempFile;
 
-use super::glb::{InPlace, Json, check_size, least_room, padding, write_front};
+use super::glb::{InPlace, Json, check_size, min_room, padding, write_front};
 use crate::write::text::of_temporary_file;
 use crate::write::{Target, WriteError};
 
@@ -28,12 +28,12 @@ const HELD_IN_MEMORY: usize = 1 << 25;
 
 /// Where a glTF file goes.
 pub struct GltfOutput<'a> {
-    form: Form<'a>,
+    form: Container<'a>,
     /// For what has to wait and is too much for memory.
     directory: PathBuf,
 }
 
-enum Form<'a> {
+enum Container<'a> {
     /// JSON, and the data in a file beside it.
     Parts {
         json: &'a mut dyn Write,
@@ -82,7 +82,7 @@ impl<'a> GltfOutput<'a> {
     pub fn glb(target: Target<'a>, meshes: usize) -> Self {
         match target {
             Target::File { file, directory } => Self {
-                form: Form::InPlace(InPlace::new(file, meshes)),
+                form: Container::InPlace(InPlace::new(file, meshes)),
                 directory: directory.to_owned(),
             },
             Target::Stream(out) => Self::waiting(out, HELD_IN_MEMORY),
@@ -97,7 +97,7 @@ impl<'a> GltfOutput<'a> {
     fn waiting(out: &'a mut dyn Write, held_in_memory: usize) -> Self {
         let data = SpooledTempFile::new(held_in_memory);
         Self {
-            form: Form::Stream { out, data },
+            form: Container::Stream { out, data },
             directory: temp_dir(),
         }
     }
@@ -109,7 +109,7 @@ impl<'a> GltfOutput<'a> {
         binary_writer: &'a mut dyn Write,
     ) -> Self {
         Self {
-            form: Form::Parts {
+            form: Container::Parts {
                 json: json_writer,
                 data: binary_writer,
                 name: BinaryName::Given(binary_name),
@@ -128,7 +128,7 @@ impl<'a> GltfOutput<'a> {
         told: &'a mut String,
     ) -> Self {
         Self {
-            form: Form::Parts {
+            form: Container::Parts {
                 json: json_writer,
                 data: binary_writer,
                 name: BinaryName::OfContent {
@@ -148,7 +148,7 @@ impl<'a> GltfOutput<'a> {
     /// What the JSON calls the file of the data, where that is one of its own; to be asked when all data is written.
     pub(super) fn binary_name(&self) -> Option<String> {
         match &self.form {
-            Form::Parts { name, .. } => {
+            Container::Parts { name, .. } => {
                 Some(utf8_percent_encode(&name.name(), IN_REFERENCE).to_string())
             }
             _ => None,
@@ -157,7 +157,7 @@ impl<'a> GltfOutput<'a> {
 
     /// What the JSON has come to, before more data is written.
     pub(super) fn describe(&mut self, meshes: usize, bytes: u64) {
-        if let Form::InPlace(file) = &mut self.form {
+        if let Container::InPlace(file) = &mut self.form {
             file.describe(meshes, bytes);
         }
     }
@@ -169,8 +169,8 @@ impl<'a> GltfOutput<'a> {
     /// More than 4 GiB in a GLB.
     pub(super) fn check_size(&self, bytes: u64) -> Result<(), WriteError> {
         match self.form {
-            Form::Parts { .. } => Ok(()),
-            Form::Stream { .. } | Form::InPlace(_) => check_size(bytes),
+            Container::Parts { .. } => Ok(()),
+            Container::Stream { .. } | Container::InPlace(_) => check_size(bytes),
         }
     }
 
@@ -181,7 +181,7 @@ impl<'a> GltfOutput<'a> {
     /// More than 4 GiB in a GLB, what waited cannot be read, or the writer fails.
     pub(super) fn finish(self, json: Json, bytes: u64) -> Result<(), WriteError> {
         match self.form {
-            Form::Parts {
+            Container::Parts {
                 json: out,
                 data,
                 name,
@@ -195,14 +195,14 @@ impl<'a> GltfOutput<'a> {
                 out.write_all(b"\n")?;
                 Ok(out.flush()?)
             }
-            Form::Stream { out, mut data } => {
-                let room = least_room(&json);
+            Container::Stream { out, mut data } => {
+                let room = min_room(&json);
                 write_front(out, json, room, bytes)?;
                 copy(&mut data, out, &self.directory)?;
                 out.write_all(padding(bytes))?;
                 Ok(out.flush()?)
             }
-            Form::InPlace(file) => file.finish(json, bytes),
+            Container::InPlace(file) => file.finish(json, bytes),
         }
     }
 }
@@ -226,26 +226,26 @@ fn copy(from: &mut SpooledTempFile, to: &mut dyn Write, directory: &Path) -> io:
 impl Write for GltfOutput<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.form {
-            Form::Parts { data, name, .. } => {
+            Container::Parts { data, name, .. } => {
                 let written = data.write(bytes)?;
                 if let BinaryName::OfContent { digest, .. } = name {
                     digest.update(&bytes[..written]);
                 }
                 Ok(written)
             }
-            Form::Stream { data, .. } => {
+            Container::Stream { data, .. } => {
                 let written = data.write(bytes);
                 written.map_err(|source| of_temporary_file(&self.directory, source))
             }
-            Form::InPlace(file) => file.write(bytes),
+            Container::InPlace(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.form {
-            Form::Parts { data, .. } => data.flush(),
-            Form::Stream { data, .. } => data.flush(),
-            Form::InPlace(file) => file.flush(),
+            Container::Parts { data, .. } => data.flush(),
+            Container::Stream { data, .. } => data.flush(),
+            Container::InPlace(file) => file.flush(),
         }
     }
 }

@@ -21,7 +21,7 @@ const TRIES: u32 = 200;
 const BETWEEN_TRIES: Duration = Duration::from_millis(10);
 
 /// A `.gltf` that is larger is not searched for the name of its data before it is replaced: none of ours is.
-const MOST_SEARCHED: u64 = 1 << 30;
+const MAX_SEARCHED: u64 = 1 << 30;
 
 /// Writes a `.gltf` with `content`, and its data beside it as `out-1a2b3c4d.bin`; the path of the latter. Both appear
 /// whole, the data first, or nothing does. Where that replaces a `.gltf` that was written in the same way, its data is
@@ -112,7 +112,7 @@ struct Buffer {
 /// The name of the data that a `.gltf` refers to, if it is one that [`write_whole_gltf`] gives.
 fn data_of(gltf: &Path, stem: &str) -> Option<String> {
     let file = File::open(gltf).ok()?;
-    if file.metadata().ok()?.len() > MOST_SEARCHED {
+    if file.metadata().ok()?.len() > MAX_SEARCHED {
         return None;
     }
     let Referring { buffers } = serde_json::from_reader(BufReader::new(file)).ok()?;

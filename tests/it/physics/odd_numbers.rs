@@ -522,7 +522,7 @@ fn write_and_draw(placed: &PlacedScene, surfaces: &[Photosurface]) {
     for format in [Format::Glb, Format::Gltf, Format::Ply] {
         let (_, _) = (
             format.check_range(placed),
-            format.least_size(placed, usize::MAX),
+            format.min_size(placed, usize::MAX),
         );
     }
     let finite = |surface: &Photosurface| {

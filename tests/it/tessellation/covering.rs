@@ -16,7 +16,7 @@ use photosurface::{
 const RAPIDITIES: [f64; 11] = [
     0.1, 2.0, 10.0, 15.0, 17.5, 18.5, 20.0, 25.0, 60.0, 200.0, 350.0,
 ];
-const MOST_TRIANGLES: u64 = 20_000;
+const MAX_TRIANGLES: u64 = 20_000;
 
 fn wanted() -> SurfaceOptions {
     SurfaceOptions {
@@ -81,7 +81,7 @@ impl Extent {
 /// Checks all photosurfaces of all steps against the parts that they are made of; how many triangles were added.
 #[track_caller]
 fn assert_covering(placed: PlacedScene, case: &str) -> usize {
-    let (placed, _) = placed.within_budget(wanted(), MOST_TRIANGLES);
+    let (placed, _) = placed.within_budget(wanted(), MAX_TRIANGLES);
     let mut added = 0;
     for step in 0..placed.scene().steps().len() {
         let surfaces: Vec<_> = placed.photosurfaces(step, wanted()).unwrap().collect();

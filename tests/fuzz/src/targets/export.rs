@@ -19,7 +19,7 @@ pub fn export(bytes: &[u8]) {
         let scene = placed.scene();
         let steps = scene.steps().len();
         let format = case.format;
-        if format.least_size(&placed, steps).is_err() {
+        if format.min_size(&placed, steps).is_err() {
             return;
         }
         if let Err(error) = format.check_range(&placed) {

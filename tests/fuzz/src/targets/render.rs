@@ -92,7 +92,7 @@ fn at_rest(placed: &PlacedScene) -> Scenery {
 fn photosurfaces(placed: &PlacedScene, step: usize, wanted: SurfaceOptions) -> Scenery {
     let mut scenery = Scenery::new();
     if let Some(marker) = placed.marker() {
-        scenery.add_plain(marker);
+        scenery.add_in_view(marker);
     }
     for surface in placed.photosurfaces(step, wanted).expect("a step") {
         let mut objects = placed.scene().objects().iter();

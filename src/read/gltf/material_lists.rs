@@ -1,4 +1,4 @@
-//! What surfaces look like, in the words of the file.
+//! The lists of a file that describe materials, in the words of the file.
 
 use std::collections::BTreeSet;
 
@@ -7,8 +7,8 @@ use serde_json::Value;
 use super::mend::drop_nulls;
 use crate::material::extension_names;
 
-/// The lists of a file that say what surfaces look like.
-pub(super) struct Looks {
+/// The lists of a file that describe materials.
+pub(super) struct MaterialLists {
     pub(super) materials: Vec<Value>,
     pub(super) textures: Vec<Value>,
     pub(super) samplers: Vec<Value>,
@@ -17,7 +17,7 @@ pub(super) struct Looks {
     pub(super) required: Vec<String>,
 }
 
-impl Looks {
+impl MaterialLists {
     pub(super) fn new(root: &Value, required: Vec<String>) -> Self {
         let list = |key: &str| {
             let mut list = root.get(key).cloned().unwrap_or_default();

@@ -12,7 +12,7 @@ const SMALLEST: f64 = 1.0 / LARGEST;
 
 /// One observer's map, ready for points from which all products can be taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PlainMap {
+pub(super) struct SafeRangeMap {
     direction: DVec3,
     /// The same as it was given, its largest component from 1 up to 2.
     heading: DVec3,
@@ -27,7 +27,7 @@ pub(super) struct PlainMap {
 
 /// How a point is seen.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sighting {
+pub(super) struct SeenPoint {
     pub(super) position: DVec3,
     /// How far away: `|position|`.
     pub(super) distance: f64,
@@ -38,7 +38,7 @@ pub(super) struct Sighting {
     pub(super) distance_at_rest: f64,
 }
 
-impl PlainMap {
+impl SafeRangeMap {
     /// `None` where the velocity is none to take all products with, or there is none.
     pub(super) fn new(observer: &Velocity) -> Option<Self> {
         let heading = heading(observer.heading())?;
@@ -61,7 +61,7 @@ impl PlainMap {
     /// `u w = |across|^2`, and the part across from error-free products with the heading as it was given: close behind a
     /// fast observer all of what is seen depends on it.
     #[inline(always)]
-    pub(super) fn see<P: Product>(&self, offset: DVec3) -> Sighting {
+    pub(super) fn see<P: Product>(&self, offset: DVec3) -> SeenPoint {
         let sideways = cross_by::<P>(self.heading, offset) * self.inverse_length;
         let across = sideways.cross(self.heading) * self.inverse_length;
         let across_squared = sideways.length_squared();
@@ -79,7 +79,7 @@ impl PlainMap {
         };
         let (seen_w, seen_u) = (w * self.stretch, u * self.squeeze);
         let position = across + self.direction * (0.5 * (seen_w - seen_u));
-        Sighting {
+        SeenPoint {
             // At rest everything is where it is, to the last bit.
             position: if self.stretch == 1.0 {
                 offset
@@ -100,10 +100,10 @@ impl PlainMap {
     ///
     /// That of [`PhotosurfaceMap::seen_normal`](super::PhotosurfaceMap::seen_normal).
     #[inline(always)]
-    pub(super) fn seen_normal(&self, sighting: &Sighting, normal_rest: DVec3) -> DVec3 {
-        let inverse_distance = sighting.distance_at_rest.recip();
-        let doppler_factor = sighting.distance * inverse_distance;
-        let toward_across = sighting.across * inverse_distance;
+    pub(super) fn seen_normal(&self, seen_point: &SeenPoint, normal_rest: DVec3) -> DVec3 {
+        let inverse_distance = seen_point.distance_at_rest.recip();
+        let doppler_factor = seen_point.distance * inverse_distance;
+        let toward_across = seen_point.across * inverse_distance;
         let along = self.direction.dot(normal_rest);
         let across = normal_rest - self.direction * along;
         let normal =
@@ -127,7 +127,7 @@ pub(super) fn forwardness(lean: f64) -> f64 {
 
 /// Whether all products can be taken with what is this size: the sum of its coordinates' sizes. Not with NaN.
 #[inline(always)]
-pub(super) fn is_plain(size: f64) -> bool {
+pub(super) fn is_in_safe_range(size: f64) -> bool {
     (SMALLEST..=LARGEST).contains(&size)
 }
 

@@ -3,7 +3,7 @@
 //! There are two readers because `tobj` is made for files as they should be: it loses what this program keeps or says
 //! (names that are not UTF-8, the faces of one material apart from each other, colours of some vertices, the line of an
 //! error), and it gives the numbers of an ordinary file without any of that. A scan of the lines decides whether a file is
-//! plain, so that both readers understand the same by it, and records its names; `tobj` reads its numbers. Every
+//! ordinary, so that both readers understand the same by it, and records its names; `tobj` reads its numbers. Every
 //! other file, and every file that `tobj` refuses, is read statement by statement, which also words the errors. Both
 //! give the same models, bit by bit.
 
@@ -20,8 +20,8 @@ const MAX_NUMBER: usize = 40;
 /// Bytes of a name at most: `tobj` copies it for every part.
 const MAX_NAME: usize = 100;
 
-/// What a plain file says; `None` for any other.
-pub(super) fn read_plain(file: &[u8]) -> Option<Statements> {
+/// What an ordinary file says; `None` for any other.
+pub(super) fn read_ordinary(file: &[u8]) -> Option<Statements> {
     let scan = Scan::new(file)?;
     let options = tobj::LoadOptions::default();
     let first = Cell::new(true);
@@ -45,7 +45,7 @@ pub(super) fn read_plain(file: &[u8]) -> Option<Statements> {
     scan.filled(&models)
 }
 
-/// What the lines of a plain file say without their numbers.
+/// What the lines of an ordinary file say without their numbers.
 #[derive(Default)]
 struct Scan {
     /// With parts that have no corners yet.
@@ -75,10 +75,10 @@ impl Scan {
         (all_follow && scan.form[0]).then_some(scan)
     }
 
-    /// Takes in a line; `None` if it is not plain.
+    /// Takes in a line; `None` if it is not ordinary.
     fn add(&mut self, line: &[u8]) -> Option<()> {
-        let is_plain = |&byte: &u8| matches!(byte, b'\t' | b' '..=b'~');
-        if !line.iter().all(is_plain) || line.ends_with(b"\\") {
+        let is_ordinary = |&byte: &u8| matches!(byte, b'\t' | b' '..=b'~');
+        if !line.iter().all(is_ordinary) || line.ends_with(b"\\") {
             return None;
         }
         if line.is_empty() || line[0] == b'#' {
@@ -110,7 +110,7 @@ impl Scan {
         let mut count = 0;
         for word in words(rest) {
             count += 1;
-            if !is_plain_number(word) {
+            if !is_ordinary_number(word) {
                 return None;
             }
         }
@@ -245,7 +245,7 @@ fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
 }
 
 /// Whether a word can be no other than a finite number or an error.
-fn is_plain_number(word: &[u8]) -> bool {
+fn is_ordinary_number(word: &[u8]) -> bool {
     let mut parts = word.splitn(2, |&byte| matches!(byte, b'e' | b'E'));
     let mantissa = parts.next().unwrap_or_default();
     let exponent = parts.next().unwrap_or_default();
@@ -267,16 +267,16 @@ mod tests {
     use super::*;
     use crate::read::uri::Folder;
 
-    /// Checks that both readers give the same model and notes of a plain file.
+    /// Checks that both readers give the same model and notes of an ordinary file.
     fn check(file: &[u8], folder: &Path, name: &str) {
-        let plain = read_plain(file).unwrap_or_else(|| panic!("{name} is not plain"));
+        let ordinary = read_ordinary(file).unwrap_or_else(|| panic!("{name} is not ordinary"));
         let by_statements = read_statements(file).unwrap();
         let model = |statements| {
             let made = model_of(statements, Folder::new(folder), "stem");
             let (model, findings) = made.unwrap_or_else(|error| panic!("{name}: {error}"));
             (model, findings.notes)
         };
-        let ((one, notes), (other, other_notes)) = (model(plain), model(by_statements));
+        let ((one, notes), (other, other_notes)) = (model(ordinary), model(by_statements));
         assert_eq!(notes, other_notes, "{name}");
         assert_eq!(one, other, "{name}");
         // Of zeros the sign counts too.
@@ -292,7 +292,7 @@ mod tests {
     #[test]
     fn both_readers_agree_on_the_plain_files_among_the_fixtures() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
-        let mut plain = vec![];
+        let mut ordinary = vec![];
         for folder in ["meshes", "text", "access"].map(|folder| root.join(folder)) {
             for entry in std::fs::read_dir(&folder).unwrap() {
                 let path = entry.unwrap().path();
@@ -301,14 +301,17 @@ mod tests {
                 }
                 let file = std::fs::read(&path).unwrap();
                 let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
-                if read_plain(&file).is_some() {
+                if read_ordinary(&file).is_some() {
                     check(&file, &folder, &name);
-                    plain.push(name);
+                    ordinary.push(name);
                 }
             }
         }
         for name in ["quad", "concave", "negative_indices", "six_sides", "groups"] {
-            assert!(plain.iter().any(|plain| plain == name), "{name}: {plain:?}");
+            assert!(
+                ordinary.iter().any(|ordinary| ordinary == name),
+                "{name}: {ordinary:?}"
+            );
         }
         for name in [
             "bad_number",
@@ -317,7 +320,7 @@ mod tests {
             "latin1",
             "nan_vn",
         ] {
-            assert!(plain.iter().all(|plain| plain != name), "{name}");
+            assert!(ordinary.iter().all(|ordinary| ordinary != name), "{name}");
         }
     }
 
@@ -426,9 +429,9 @@ mod tests {
     #[test]
     fn what_the_readers_might_understand_differently_is_not_plain() {
         let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n";
-        let is_plain = |line: &str| {
+        let is_ordinary = |line: &str| {
             let file = format!("{corners}{line}\nf 1 2 3\n");
-            read_plain(file.as_bytes()).is_some()
+            read_ordinary(file.as_bytes()).is_some()
         };
         for line in [
             "",
@@ -439,7 +442,7 @@ mod tests {
             "v 1e9 +2 -3.",
             "f -1 -2 -3",
         ] {
-            assert!(is_plain(line), "{line:?}");
+            assert!(is_ordinary(line), "{line:?}");
         }
         for line in [
             "v 1 2",
@@ -467,11 +470,11 @@ mod tests {
             "f 1 2 3 # c",
             "# c \\",
         ] {
-            assert!(!is_plain(line), "{line:?}");
+            assert!(!is_ordinary(line), "{line:?}");
         }
         let long = "n".repeat(MAX_NAME);
-        assert!(is_plain(&format!("o {long}")));
-        assert!(!is_plain(&format!("o {long}n")));
-        assert!(read_plain(b"v 0 0 0\n").is_none());
+        assert!(is_ordinary(&format!("o {long}")));
+        assert!(!is_ordinary(&format!("o {long}n")));
+        assert!(read_ordinary(b"v 0 0 0\n").is_none());
     }
 }
