@@ -4,9 +4,10 @@
 //!
 //!     cargo run --release --example own_mesh
 
+use photosurface::write::{Export, write_glb, write_whole};
 use photosurface::{
-    DVec3, Export, Mesh, Model, Object, Observer, Part, PlacedScene, Scene, Source, SurfaceOptions,
-    Velocity, write_glb, write_whole,
+    DVec3, Mesh, Model, Object, Observer, Part, PlacedScene, Scene, Source, SurfaceOptions,
+    Velocity,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -6,7 +6,8 @@
 //!
 //!     cargo run --release --example terrell_rotation
 
-use photosurface::{DVec3, PhotosurfaceMap, Velocity};
+use photosurface::light_cone::PhotosurfaceMap;
+use photosurface::{DVec3, Velocity};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("  beta   front   side   looks turned by   side is long   and leans by");

@@ -6,9 +6,55 @@
 //! Weiskopf, Ruder 1998). Seen from the observer's place with an ordinary camera it gives exactly the
 //! relativistic image; seen from anywhere else it explains that image.
 //!
-//! The way through the library: read or build a [`Scene`], get the models of its objects with
-//! [`load_models`], place both as a [`PlacedScene`], take its [`Photosurface`]s, write them with [`write_glb`]; [`CostStudy`]
-//! tells what accuracy costs. The mathematics alone is in [`Velocity`], [`Lorentz`], [`PhotosurfaceMap`] and [`View`].
+//! # Three calls
+//!
+//! [`PlacedScene::load`] reads a scene with its models, or a mesh by itself; [`export`] writes its photosurfaces, and
+//! [`render()`] or [`render_to_files`] draw it:
+//!
+//! ```
+//! use photosurface::{
+//!     ExportSettings, PictureMethod, PictureSettings, PictureView, PlacedScene, Textures, export, render_to_files,
+//! };
+//!
+//! # let folder = tempfile::tempdir()?;
+//! # let scene = folder.path().join("scene.json");
+//! # std::fs::write(&scene, r#"{ "observer": { "velocity": { "beta": 0.9, "direction": [1, 0, 0] } }, "steps": [0, 1],
+//! #   "objects": [ { "name": "ball", "shape": { "sphere": { "radius": 1 } }, "position": [0, 3, 0] } ] }"#)?;
+//! # let [meshes, pictures] = ["out.glb", "out.png"].map(|name| folder.path().join(name));
+//! let (placed, findings) = PlacedScene::load(&scene)?;
+//! for (file, found) in &findings {
+//!     for note in found.lines() {
+//!         eprintln!("{}: {note}", file.display());
+//!     }
+//! }
+//!
+//! // All steps in one file; each photosurface is proven to be within its tolerance.
+//! let exported = export(&placed, &ExportSettings::default(), &meshes, &())?;
+//! assert!(exported[0].tally.is_certified());
+//!
+//! // The observer's view of each step: out_step000.png, out_step001.png, ...
+//! let settings = PictureSettings::new(PictureView::Observer(PictureMethod::Rays));
+//! # let settings = PictureSettings { camera: photosurface::jobs::CameraSettings {
+//! #   size: photosurface::render::PictureSize::new(32, 18)?, ..settings.camera }, ..settings };
+//! render_to_files(&placed, &Textures::default(), &settings, &pictures, &())?;
+//! # assert!(folder.path().join("out_step001.png").exists());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The last argument of a job hears how far the job has got and may end it: see [`Progress`].
+//!
+//! # Further modules
+//!
+//! | for | see |
+//! |---|---|
+//! | jobs: load, export, pictures, with settings, progress and errors | [`jobs`] |
+//! | scenes from JSON or from Rust, and shapes | [`scene`], [`shape`] |
+//! | meshes and materials, from files or of your own | [`mesh`], [`material`], [`read`] |
+//! | photosurfaces, predictions, certificates | [`pipeline`], [`tessellate`] |
+//! | files of photosurfaces | [`mod@write`] |
+//! | pictures by rays of light | [`mod@render`] |
+//! | what accuracy costs | [`study`] |
+//! | the mathematics alone: velocities, frames, where a point is seen | [`spacetime`], [`light_cone`] |
 //!
 //! Conventions: c = 1; lengths and times share one unit; right-handed coordinates, y up; angles in radians.
 //! Everything is computed in `f64`. The *scene frame* is that of the scene; the *rest frame* of an object
@@ -18,69 +64,33 @@
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 mod effects;
-mod jobs;
-mod light_cone;
-mod material;
-mod mesh;
-mod pipeline;
+pub mod jobs;
+pub mod light_cone;
+pub mod material;
+pub mod mesh;
+pub mod pipeline;
 #[cfg(feature = "plot")]
 mod plot;
-mod read;
-mod render;
-mod scene;
-mod shape;
-mod spacetime;
-mod study;
-mod tessellate;
-mod write;
+pub mod read;
+pub mod render;
+pub mod scene;
+pub mod shape;
+pub mod spacetime;
+pub mod study;
+pub mod tessellate;
+pub mod write;
 
 pub use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, DVec4, Vec2, Vec4};
 
 pub use jobs::{
-    Aim, CameraSettings, Cancelled, DEFAULT_MAX_TRIANGLES, EmptyView, ExportError, ExportLevel,
-    ExportSettings, Exported, FieldOfView, FileFindings, Fitted, FittedExport, FramingError, Ghost,
-    Guides, InputError, LoadError, MAX_SCENE_BYTES, OBSERVER_FOV_DEG, OutputError, PictureMethod,
-    PictureSettings, PictureView, Progress, RenderError, Rendered, SceneTextError, Tally, ViewCost,
-    check_outputs, export, export_levels, file_for_each_step, levels_of_detail, load_models,
-    render, render_to_files, scene_from_bytes, stand_off, with_suffix, write_report,
+    Cancelled, ExportSettings, Exported, PictureMethod, PictureSettings, PictureView, Progress,
+    export, load_models, render, render_to_files,
 };
-pub use light_cone::{PhotosurfaceMap, View};
-pub use material::{
-    AlphaMode, Image, Material, MaterialError, Model, Part, PictureError, Texture, Wrap,
-};
-pub use mesh::{Mesh, MeshError};
-pub use pipeline::{
-    Facts, Photosurface, PlacedScene, PlacedSceneError, Prediction, SceneFacts, SurfaceOptions,
-    VertexData, step_label,
-};
-pub use read::{
-    Access, AccessorProblem, DocumentProblem, Findings, NodeProblem, Note, ObjProblem, ReadError,
-    UriProblem, read_gltf_bytes, read_model, read_whole,
-};
-pub use render::{
-    Camera, CameraError, MAX_PICTURE_SIDE, MissingTexture, Picture, PictureOptions, PictureSize,
-    Projection, Scenery, Strokes, Textures, Viewpoint, lettering_width,
-};
-pub use scene::{
-    Attribute, Attributes, BUILT_IN_SCENES, BuiltInScene, InvalidScene, MarkerRadius,
-    MarkerRadiusError, Object, Observer, Place, PlaceError, Rotation, RotationError, Scale, Scene,
-    SceneError, Source, Time, TimeError, Tolerance, ToleranceError, Unit, UnknownAttribute,
-    even_steps,
-};
-pub use shape::{
-    Appearance, Cells, Color, Cone, Count, Cuboid, Cylinder, Grid, Lattice, Length, Rod, Shape,
-    ShapeError, Sphere, Torus,
-};
-pub use spacetime::{Event, Lorentz, MAX_RAPIDITY, Moment, Velocity, VelocityError, WorldLine};
-pub use study::{
-    CostSettings, CostStudy, Made, MeshCost, Pictures, RayCost, RaySettings, Seconds, StudyError,
-    UniformCost, UniformRun,
-};
-#[cfg(feature = "plot")]
-pub use study::{PlotError, PlotSize};
-pub use tessellate::{Certificate, Precision, edge_gap, triangle_gap, triangle_gap_place};
-pub use write::{
-    Export, Format, GltfFile, GltfOutput, Playback, Report, StageTime, Target, WriteError,
-    abandon_writes, destination, replaced_data, write_glb, write_gltf, write_ply, write_whole,
-    write_whole_gltf, write_whole_target,
-};
+pub use material::{Model, Part};
+pub use mesh::Mesh;
+pub use pipeline::{Photosurface, PlacedScene, SurfaceOptions};
+pub use render::Textures;
+pub use scene::{Object, Observer, Scene, Source, Tolerance};
+pub use shape::Shape;
+pub use spacetime::{Moment, Velocity};
+pub use study::{CostSettings, CostStudy};

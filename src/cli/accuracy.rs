@@ -2,10 +2,11 @@
 
 use anyhow::{Context, bail};
 use clap::Args;
-use photosurface::{
-    DEFAULT_MAX_TRIANGLES, Fitted, Format, PlacedScene, Precision, Prediction, Scene,
-    SurfaceOptions, Tally, Tolerance, levels_of_detail,
-};
+use photosurface::jobs::{DEFAULT_MAX_TRIANGLES, Fitted, Tally, levels_of_detail};
+use photosurface::pipeline::Prediction;
+use photosurface::tessellate::Precision;
+use photosurface::write::Format;
+use photosurface::{PlacedScene, Scene, SurfaceOptions, Tolerance};
 
 use super::args::{Given, whole_number};
 use super::export::in_words_of_flags;

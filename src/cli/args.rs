@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use anyhow::{Context, anyhow, ensure};
 use clap::Args;
-use photosurface::{
-    Access, DVec3, MarkerRadius, Observer, Place, Scene, Time, Velocity, even_steps,
-};
+use photosurface::read::Access;
+use photosurface::scene::{MarkerRadius, Place, Time, even_steps};
+use photosurface::{DVec3, Observer, Scene, Velocity};
 
 /// What to look at.
 #[derive(Debug, Args)]

@@ -3,10 +3,10 @@
 use std::num::NonZeroU32;
 
 use anyhow::{Context, anyhow, bail, ensure};
-use photosurface::{
-    Aim, CameraError, CameraSettings, Color, DVec3, FieldOfView, FramingError, PictureMethod,
-    PictureSettings, PictureSize, PictureView, RenderError,
-};
+use photosurface::jobs::{Aim, CameraSettings, FieldOfView, FramingError, RenderError};
+use photosurface::render::{CameraError, PictureSize};
+use photosurface::shape::Color;
+use photosurface::{DVec3, PictureMethod, PictureSettings, PictureView};
 
 use super::args::{Given, number, refuse, vector};
 

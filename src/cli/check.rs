@@ -2,7 +2,9 @@
 
 use std::io::Write;
 
-use photosurface::{Format, PlacedScene, Prediction};
+use photosurface::PlacedScene;
+use photosurface::pipeline::Prediction;
+use photosurface::write::Format;
 
 use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, predicted, total};
 use super::args::{InputArgs, ObserverArgs};

@@ -54,7 +54,7 @@ pub(crate) fn run() -> ExitCode {
     };
     // A handler that cannot be set leaves the system's own, which ends the program too.
     let _ = ctrlc::set_handler(|| {
-        photosurface::abandon_writes();
+        photosurface::write::abandon_writes();
         std::process::exit(INTERRUPTED.into());
     });
     let threads = cli.threads.map_or(Ok(()), compute_with);

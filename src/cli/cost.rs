@@ -4,11 +4,13 @@ use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail, ensure};
-use photosurface::{
-    Aim, CameraError, CameraSettings, CostSettings, CostStudy, DVec3, FieldOfView, FramingError,
-    Made, OBSERVER_FOV_DEG, PictureSize, PlacedScene, PlotSize, RaySettings, StudyError, Tolerance,
-    with_suffix, write_whole,
+use photosurface::jobs::{
+    Aim, CameraSettings, FieldOfView, FramingError, OBSERVER_FOV_DEG, with_suffix,
 };
+use photosurface::render::{CameraError, PictureSize};
+use photosurface::study::{Made, PlotSize, RaySettings, StudyError};
+use photosurface::write::write_whole;
+use photosurface::{CostSettings, CostStudy, DVec3, PlacedScene, Tolerance};
 
 use super::accuracy::tolerance;
 use super::args::{Given, InputArgs, ObserverArgs, count, number, refuse, vector, whole_number};

@@ -2,7 +2,9 @@
 
 use std::io::Write;
 
-use photosurface::{CostStudy, MeshCost, RayCost, Unit};
+use photosurface::CostStudy;
+use photosurface::scene::Unit;
+use photosurface::study::{MeshCost, RayCost};
 use serde::Serialize;
 use serde_json::Value;
 

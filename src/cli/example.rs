@@ -1,7 +1,7 @@
 //! `photosurface example`: the scenes that the program carries with it.
 
 use anyhow::Context;
-use photosurface::{BUILT_IN_SCENES, BuiltInScene};
+use photosurface::scene::{BUILT_IN_SCENES, BuiltInScene};
 
 use super::messages::print;
 

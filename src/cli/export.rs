@@ -7,10 +7,11 @@ use std::time::Instant;
 
 use anyhow::{Context, anyhow, ensure};
 use clap::ValueEnum;
-use photosurface::{
-    Attribute, ExportError, ExportLevel, ExportSettings, Exported, Facts, Format, PlacedScene,
-    Playback, Report, StageTime, WriteError, export_levels, write_report,
-};
+use photosurface::jobs::{ExportError, ExportLevel, export_levels, write_report};
+use photosurface::pipeline::Facts;
+use photosurface::scene::Attribute;
+use photosurface::write::{Format, Playback, Report, StageTime, WriteError};
+use photosurface::{ExportSettings, Exported, PlacedScene};
 
 use super::accuracy::{AccuracyArgs, DetailArgs};
 use super::args::{InputArgs, ObserverArgs, number};

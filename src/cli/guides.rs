@@ -1,6 +1,6 @@
 //! Flags for what helps to read a picture from outside, and what its colours mean.
 
-use photosurface::{Ghost, Guides};
+use photosurface::jobs::{Ghost, Guides};
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Guides (for views from outside)")]

@@ -4,10 +4,10 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, bail, ensure};
-use photosurface::{
-    Access, BUILT_IN_SCENES, Findings, MAX_SCENE_BYTES, Model, Object, Observer, ReadError, Scene,
-    Source, Textures, read_whole, scene_from_bytes, stand_off,
-};
+use photosurface::jobs::{MAX_SCENE_BYTES, scene_from_bytes, stand_off};
+use photosurface::read::{Access, Findings, ReadError, read_whole};
+use photosurface::scene::BUILT_IN_SCENES;
+use photosurface::{Model, Object, Observer, Scene, Source, Textures};
 
 use super::args::{InputArgs, ObserverArgs};
 use super::example::built_in;

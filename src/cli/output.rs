@@ -6,7 +6,9 @@ use std::time::Duration;
 
 use anyhow::anyhow;
 use indicatif::{ProgressBar, ProgressStyle};
-use photosurface::{Cancelled, Format, PlacedScene, Progress, WriteError, check_outputs};
+use photosurface::jobs::check_outputs;
+use photosurface::write::{Format, WriteError};
+use photosurface::{Cancelled, PlacedScene, Progress};
 
 use super::messages::Verbosity;
 

@@ -4,10 +4,11 @@ use std::io::{IsTerminal, stdout};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
-use photosurface::{
-    DVec3, EmptyView, Picture, PictureView, PlacedScene, Precision, RenderError, ViewCost,
-    write_whole,
-};
+use photosurface::jobs::{EmptyView, RenderError, ViewCost};
+use photosurface::render::Picture;
+use photosurface::tessellate::Precision;
+use photosurface::write::write_whole;
+use photosurface::{DVec3, PictureView, PlacedScene};
 
 use super::accuracy::AccuracyArgs;
 use super::args::{InputArgs, ObserverArgs};

@@ -2,7 +2,9 @@
 
 use std::process::ExitCode;
 
-use photosurface::{Cancelled, ExportError, WriteError};
+use photosurface::Cancelled;
+use photosurface::jobs::ExportError;
+use photosurface::write::WriteError;
 
 use super::messages;
 

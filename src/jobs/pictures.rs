@@ -66,7 +66,7 @@ pub struct PictureSettings {
     /// Marks in views from outside.
     pub guides: Guides,
     /// How photosurfaces are made where they are in the pictures. A number of triangles that they may have together is a
-    /// matter of the placed scene: see [`Fitted`](crate::Fitted).
+    /// matter of the placed scene: see [`Fitted`](crate::jobs::Fitted).
     pub surface_options: SurfaceOptions,
 }
 
@@ -224,10 +224,9 @@ pub struct ViewCost {
 /// # Example
 ///
 /// ```
-/// use photosurface::{
-///     Picture, PictureMethod, PictureSettings, PictureSize, PictureView, PlacedScene, RenderError, Scene, Textures,
-///     load_models, render,
-/// };
+/// use photosurface::jobs::RenderError;
+/// use photosurface::render::{Picture, PictureSize};
+/// use photosurface::{PictureMethod, PictureSettings, PictureView, PlacedScene, Scene, Textures, load_models, render};
 ///
 /// let scene = Scene::from_json(
 ///     r#"{ "observer": { "velocity": { "beta": 0.8 } }, "steps": [0, 1],

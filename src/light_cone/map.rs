@@ -27,13 +27,14 @@ use crate::spacetime::{Velocity, exact, harmless_scale, heading, length, unit};
 /// # Example
 ///
 /// ```
-/// use photosurface::{DVec3, PhotosurfaceMap, Velocity};
+/// use photosurface::light_cone::PhotosurfaceMap;
+/// use photosurface::{DVec3, Velocity};
 ///
 /// // A point 3 ahead of an observer who moves towards it at 0.8 c is seen 9 ahead.
 /// let observer = Velocity::from_beta(0.8, DVec3::X)?;
 /// let seen = PhotosurfaceMap::new(&observer).seen_position(DVec3::new(3.0, 0.0, 0.0));
 /// assert!((seen - DVec3::new(9.0, 0.0, 0.0)).length() < 1e-14);
-/// # Ok::<(), photosurface::VelocityError>(())
+/// # Ok::<(), photosurface::spacetime::VelocityError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhotosurfaceMap {

@@ -14,14 +14,14 @@ use super::{MaterialError, Texture, extension_names, retain_textures};
 /// # Example
 ///
 /// ```
-/// use photosurface::{AlphaMode, Material};
+/// use photosurface::material::{AlphaMode, Material};
 /// use serde_json::json;
 ///
 /// let glass = json!({ "pbrMetallicRoughness": { "baseColorFactor": [0.2, 0.4, 0.3, 0.5] }, "alphaMode": "BLEND" });
 /// let glass = Material::new(glass, vec![])?;
 /// assert_eq!(glass.base_color(), [0.2, 0.4, 0.3, 0.5]);
 /// assert_eq!(glass.alpha_mode(), AlphaMode::Blend);
-/// # Ok::<(), photosurface::MaterialError>(())
+/// # Ok::<(), photosurface::material::MaterialError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {

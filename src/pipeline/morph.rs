@@ -8,7 +8,7 @@ impl PlacedScene {
     /// until it is within the tolerance at every step.
     ///
     /// For each part, in the order of the scene, one photosurface a step. Their certificates are for a file in which
-    /// all steps share one offset, as [`Playback::Morph`](crate::Playback::Morph) writes it.
+    /// all steps share one offset, as [`Playback::Morph`](crate::write::Playback::Morph) writes it.
     pub fn morphing(&self, wanted: SurfaceOptions) -> impl Iterator<Item = Vec<Photosurface>> {
         let objects = self.scene.objects().iter().zip(&self.objects);
         objects.flat_map(move |(object, placed_object)| {

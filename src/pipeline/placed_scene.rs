@@ -28,7 +28,7 @@ const A_STEP: &str = "whoever asks for a plan asks for a step of the scene";
 /// # Example
 ///
 /// ```
-/// use photosurface::{Scene, PlacedScene, SurfaceOptions, load_models};
+/// use photosurface::{PlacedScene, Scene, SurfaceOptions, load_models};
 ///
 /// let scene = Scene::from_json(
 ///     r#"{ "observer": { "velocity": { "beta": 0.8 } },

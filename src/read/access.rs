@@ -25,12 +25,12 @@ const BYTES_OF_PIXEL: u64 = 8;
 /// # Example
 ///
 /// ```
-/// use photosurface::Access;
+/// use photosurface::read::Access;
 ///
 /// let access = Access { folders: vec!["/usr/share/models".into()], ..Access::default() };
 /// let (model, _) = access.read_model("fixtures/meshes/external.gltf".as_ref())?;
 /// assert_eq!(model.parts.len(), 1);
-/// # Ok::<(), photosurface::ReadError>(())
+/// # Ok::<(), photosurface::read::ReadError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Access {

@@ -28,8 +28,8 @@ const FACETS: f64 = 1e-4;
 ///
 /// Three kinds: objects *at rest* in their own frames, which an observer sees by their light (the method of
 /// rays); *photosurfaces*, mapped already, which the same observer sees as they stand (the method of
-/// meshes); and *plain* things in the observer's frame, with no light to travel. From outside all are drawn as
-/// they stand. Plain things can be *ghosts* too: seen through, and through what is in front of them.
+/// meshes); and things *in view*, which stand in the observer's frame, with no light to travel. From outside all are drawn
+/// as they stand. Things in view can be *ghosts* too: seen through, and through what is in front of them.
 ///
 /// # Shading
 ///
@@ -43,9 +43,8 @@ const FACETS: f64 = 1e-4;
 /// # Example
 ///
 /// ```
-/// use photosurface::{
-///     Camera, DVec3, PictureOptions, PictureSize, Projection, Scene, Scenery, PlacedScene, Viewpoint, load_models,
-/// };
+/// use photosurface::render::{Camera, PictureOptions, PictureSize, Projection, Scenery, Viewpoint};
+/// use photosurface::{DVec3, PlacedScene, Scene, load_models};
 ///
 /// let scene = Scene::from_json(
 ///     r#"{ "observer": { "velocity": { "beta": 0.8 } },

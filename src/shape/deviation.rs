@@ -74,7 +74,7 @@ impl Shape {
     /// assert!(sphere.deviation() <= 1e-4);
     /// let as_asked = Shape::sphere(2.0)?.with_resolution(8)?;
     /// assert_eq!(as_asked.within(1e-4), as_asked);
-    /// # Ok::<(), photosurface::ShapeError>(())
+    /// # Ok::<(), photosurface::shape::ShapeError>(())
     /// ```
     #[must_use]
     pub fn within(&self, deviation: f64) -> Self {

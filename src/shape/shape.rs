@@ -20,11 +20,12 @@ use crate::material::{Model, Part};
 /// # Example
 ///
 /// ```
-/// use photosurface::{Appearance, Shape};
+/// use photosurface::shape::Appearance;
+/// use photosurface::Shape;
 ///
 /// let model = Shape::torus(2.0, 0.5)?.with_resolution(48)?.model(&Appearance::default())?;
 /// assert_eq!(model.triangle_count(), 2 * 48 * 12);
-/// # Ok::<(), photosurface::ShapeError>(())
+/// # Ok::<(), photosurface::shape::ShapeError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, JsonSchema, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]

@@ -43,7 +43,7 @@ impl Lorentz {
 
     /// This transformation, then `next`.
     ///
-    /// The rapidity of a composition is at most 700, twice [`MAX_RAPIDITY`](crate::MAX_RAPIDITY), which no two
+    /// The rapidity of a composition is at most 700, twice [`MAX_RAPIDITY`](crate::spacetime::MAX_RAPIDITY), which no two
     /// velocities that were given exceed: a larger one is held there, for its `gamma` would be beyond `f64`.
     ///
     /// # Accuracy

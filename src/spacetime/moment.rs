@@ -20,13 +20,14 @@ use super::{Event, Lorentz, Rotation, Velocity, WorldLine};
 /// # Example
 ///
 /// ```
-/// use photosurface::{DVec3, Event, Lorentz, Moment, Velocity};
+/// use photosurface::spacetime::{Event, Lorentz};
+/// use photosurface::{DVec3, Moment, Velocity};
 ///
 /// let velocity = Velocity::from_beta(0.6, DVec3::X)?;
 /// let start = Moment::new(Event::default(), Lorentz::boost(velocity));
 /// let later = start.coasted(4.0).event();
 /// assert!((later.time - 5.0).abs() < 1e-14 && (later.position.x - 3.0).abs() < 1e-14);
-/// # Ok::<(), photosurface::VelocityError>(())
+/// # Ok::<(), photosurface::spacetime::VelocityError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {

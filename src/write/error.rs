@@ -130,7 +130,7 @@ pub enum WriteError {
     /// There are no photosurfaces.
     #[error(transparent)]
     PlacedScene(#[from] PlacedSceneError),
-    /// Whoever asked for the file has ended the work, or all writing: see [`abandon_writes`](crate::abandon_writes).
+    /// Whoever asked for the file has ended the work, or all writing: see [`abandon_writes`](crate::write::abandon_writes).
     #[error("cancelled")]
     Cancelled,
     /// The operating system says no to a stream.

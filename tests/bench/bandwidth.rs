@@ -13,7 +13,9 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use common::Random;
-use photosurface::{DVec3, Event, Velocity, View, WorldLine};
+use photosurface::light_cone::View;
+use photosurface::spacetime::{Event, WorldLine};
+use photosurface::{DVec3, Velocity};
 
 const REPEATS: usize = 15;
 

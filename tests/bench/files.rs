@@ -13,9 +13,10 @@ use std::sync::Arc;
 
 use common::refining::{Sighting, frozen, model};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use photosurface::read::read_model;
+use photosurface::write::{Export, write_glb, write_ply};
 use photosurface::{
-    DVec3, Export, Mesh, Photosurface, PlacedScene, Shape, Source, SurfaceOptions, Tolerance,
-    Velocity, read_model, write_glb, write_ply,
+    DVec3, Mesh, Photosurface, PlacedScene, Shape, Source, SurfaceOptions, Tolerance, Velocity,
 };
 use settings::settings;
 

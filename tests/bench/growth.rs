@@ -12,10 +12,12 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use photosurface::read::{read_gltf_bytes, read_model};
+use photosurface::render::{Camera, PictureOptions, PictureSize, Projection, Scenery, Viewpoint};
+use photosurface::scene::Place;
 use photosurface::{
-    Camera, DVec3, Mesh, Model, Object, Observer, Part, PictureOptions, PictureSize, Place,
-    PlacedScene, Projection, Scene, Scenery, Source, SurfaceOptions, Velocity, Viewpoint,
-    read_gltf_bytes, read_model,
+    DVec3, Mesh, Model, Object, Observer, Part, PlacedScene, Scene, Source, SurfaceOptions,
+    Velocity,
 };
 use serde_json::{Value, json};
 

@@ -12,7 +12,9 @@ use std::hint::black_box;
 
 use common::Random;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use photosurface::{DVec3, PhotosurfaceMap, Velocity, edge_gap, triangle_gap};
+use photosurface::light_cone::PhotosurfaceMap;
+use photosurface::tessellate::{edge_gap, triangle_gap};
+use photosurface::{DVec3, Velocity};
 use settings::settings;
 
 const CLUSTERS: usize = 8;

@@ -13,9 +13,10 @@ use std::sync::Arc;
 use common::Random;
 use common::refining::model;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use photosurface::render::{Camera, PictureOptions, PictureSize, Projection, Scenery, Viewpoint};
+use photosurface::scene::{BuiltInScene, Place};
 use photosurface::{
-    BuiltInScene, Camera, DVec3, Mesh, Object, Observer, PictureOptions, PictureSize, Place,
-    PlacedScene, Projection, Scene, Scenery, Source, Velocity, Viewpoint, load_models,
+    DVec3, Mesh, Object, Observer, PlacedScene, Scene, Source, Velocity, load_models,
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use settings::settings;

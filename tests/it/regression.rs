@@ -6,13 +6,21 @@ use crate::common::alone::alone;
 use crate::common::command::{Workplace, glb_json};
 use crate::common::glb::Glb;
 use crate::common::refining::{Sighting, model, plate};
+use photosurface::light_cone::{PhotosurfaceMap, View};
+use photosurface::pipeline::PlacedSceneError;
+use photosurface::render::{
+    Camera, Picture, PictureOptions, PictureSize, Projection, Scenery, Strokes, Viewpoint,
+};
+use photosurface::scene::{Attributes, Rotation, even_steps};
+use photosurface::shape::{Appearance, Color};
+use photosurface::spacetime::{Event, Lorentz, MAX_RAPIDITY, WorldLine};
+use photosurface::tessellate::Precision;
+use photosurface::write::{
+    Export, Playback, WriteError, abandon_writes, destination, write_glb, write_ply, write_whole,
+};
 use photosurface::{
-    Appearance, Attributes, Camera, Color, DAffine3, DQuat, DVec2, DVec3, Event, Export, Lorentz,
-    MAX_RAPIDITY, Mesh, Model, Object, Observer, Photosurface, PhotosurfaceMap, Picture,
-    PictureOptions, PictureSize, PlacedScene, PlacedSceneError, Playback, Precision, Projection,
-    Rotation, Scene, Scenery, Shape, Source, Strokes, SurfaceOptions, Tolerance, Velocity, View,
-    Viewpoint, WorldLine, WriteError, abandon_writes, destination, even_steps, load_models,
-    write_glb, write_ply, write_whole,
+    DAffine3, DQuat, DVec2, DVec3, Mesh, Model, Object, Observer, Photosurface, PlacedScene, Scene,
+    Shape, Source, SurfaceOptions, Tolerance, Velocity, load_models,
 };
 use serde_json::json;
 

@@ -7,7 +7,8 @@ pub(crate) mod oracle;
 pub(crate) mod passing;
 pub(crate) mod refining;
 
-use photosurface::{DVec3, PhotosurfaceMap, Velocity};
+use photosurface::light_cone::PhotosurfaceMap;
+use photosurface::{DVec3, Velocity};
 use proptest::test_runner::{Config, RngSeed};
 
 /// What relative roundings may add up to in one result: one costs half an epsilon, and from given

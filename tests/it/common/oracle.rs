@@ -6,7 +6,8 @@
 //! solutions. At 300 digits nothing has to be arranged so as not to cancel.
 
 use dashu_float::{FBig, round::mode::HalfEven};
-use photosurface::{DQuat, DVec3, Event, Velocity};
+use photosurface::spacetime::Event;
+use photosurface::{DQuat, DVec3, Velocity};
 
 /// A real number with [`PRECISION`] bits.
 pub(crate) type Big = FBig<HalfEven, 2>;

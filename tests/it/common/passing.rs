@@ -7,7 +7,8 @@
 //! per unit of rapidity, the Doppler factor by `D` at most. To this comes the map's own error:
 //! `RELATIVE`, and `TURN` where the direction of motion is not an axis.
 
-use photosurface::{DVec3, PhotosurfaceMap, Velocity};
+use photosurface::light_cone::PhotosurfaceMap;
+use photosurface::{DVec3, Velocity};
 
 use super::{RELATIVE, TURN};
 

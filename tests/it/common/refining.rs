@@ -3,9 +3,13 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use photosurface::light_cone::PhotosurfaceMap;
+use photosurface::scene::Place;
+use photosurface::shape::Appearance;
+use photosurface::tessellate::Precision;
 use photosurface::{
-    Appearance, DVec3, Mesh, Model, Object, Observer, Part, PhotosurfaceMap, Place, PlacedScene,
-    Precision, Scene, Shape, Source, SurfaceOptions, Tolerance, Velocity, load_models,
+    DVec3, Mesh, Model, Object, Observer, Part, PlacedScene, Scene, Shape, Source, SurfaceOptions,
+    Tolerance, Velocity, load_models,
 };
 
 use super::Random;
@@ -22,7 +26,7 @@ pub(crate) struct Sighting {
 /// A photosurface with its vertices at rest.
 #[derive(Clone, Debug)]
 pub(crate) struct Sighted {
-    pub(crate) certificate: photosurface::Certificate,
+    pub(crate) certificate: photosurface::tessellate::Certificate,
     pub(crate) seen: Mesh,
     /// Brought back by the inverse map: as exact as what is seen allows.
     pub(crate) rest: Vec<DVec3>,

@@ -7,9 +7,11 @@ use std::sync::Arc;
 
 use crate::common::command::Workplace;
 use glam::{DVec2, DVec3};
+use photosurface::material::Material;
+use photosurface::render::{Camera, PictureSize, Projection};
+use photosurface::study::RaySettings;
 use photosurface::{
-    Camera, CostSettings, CostStudy, Material, Mesh, Model, Object, Observer, Part, PictureSize,
-    Projection, RaySettings, Scene, Source, Velocity,
+    CostSettings, CostStudy, Mesh, Model, Object, Observer, Part, Scene, Source, Velocity,
 };
 use serde_json::{Value, json};
 

@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use crate::common::Random;
 use crate::common::command::{Workplace, glb_json};
 use crate::common::glb::Glb;
-use photosurface::{
-    Attributes, DVec3, Photosurface, PlacedScene, Scene, SurfaceOptions, View, load_models,
-};
+use photosurface::light_cone::View;
+use photosurface::scene::Attributes;
+use photosurface::{DVec3, Photosurface, PlacedScene, Scene, SurfaceOptions, load_models};
 use serde_json::Value;
 
 /// A round shape, a flat one near the observer, and one that moves too.

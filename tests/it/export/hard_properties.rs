@@ -6,10 +6,14 @@ use crate::common::command::Workplace;
 use crate::common::glb::{Glb, pack};
 use crate::common::refining::model;
 use crate::common::{Random, cases};
+use photosurface::light_cone::{PhotosurfaceMap, View};
+use photosurface::scene::Place;
+use photosurface::spacetime::{Event, Lorentz, MAX_RAPIDITY, VelocityError, WorldLine};
+use photosurface::tessellate::Precision;
+use photosurface::write::{Export, WriteError, write_glb};
 use photosurface::{
-    DVec3, Event, Export, Lorentz, MAX_RAPIDITY, Mesh, Object, Observer, PhotosurfaceMap, Place,
-    PlacedScene, Precision, Scene, Source, SurfaceOptions, Velocity, VelocityError, View,
-    WorldLine, WriteError, load_models, write_glb,
+    DVec3, Mesh, Object, Observer, PlacedScene, Scene, Source, SurfaceOptions, Velocity,
+    load_models,
 };
 use proptest::prelude::*;
 

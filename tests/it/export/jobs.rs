@@ -6,9 +6,11 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use photosurface::jobs::ExportError;
+use photosurface::write::Playback;
 use photosurface::{
-    Cancelled, CostSettings, CostStudy, ExportError, ExportSettings, PlacedScene, Playback,
-    Progress, Tolerance, export, load_models,
+    Cancelled, CostSettings, CostStudy, ExportSettings, PlacedScene, Progress, Tolerance, export,
+    load_models,
 };
 
 use crate::common::command::Workplace;

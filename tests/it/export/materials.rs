@@ -7,10 +7,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::common::glb::{Glb, index};
-use photosurface::{
-    Export, Note, Object, Observer, Photosurface, PlacedScene, Scene, Source, SurfaceOptions,
-    read_model, write_glb,
-};
+use photosurface::read::{Note, read_model};
+use photosurface::write::{Export, write_glb};
+use photosurface::{Object, Observer, Photosurface, PlacedScene, Scene, Source, SurfaceOptions};
 use serde_json::{Value, json};
 
 fn fixture(name: &str) -> PathBuf {

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use crate::common::command::{BALL, Run, SQUARE, Workplace, glb_json};
 use crate::common::glb::{Glb, pack};
-use photosurface::{Access, Note, ReadError, read_gltf_bytes};
+use photosurface::read::{Access, Note, ReadError, read_gltf_bytes};
 use serde_json::{Value, json};
 
 /// What nobody but its owner should see; as a buffer, three corners.

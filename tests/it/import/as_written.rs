@@ -4,9 +4,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use photosurface::read::{read_gltf_bytes, read_model};
+use photosurface::write::{Export, write_glb, write_ply};
 use photosurface::{
-    DVec3, Export, Model, Object, Observer, Photosurface, PlacedScene, Scene, Source,
-    SurfaceOptions, read_gltf_bytes, read_model, write_glb, write_ply,
+    DVec3, Model, Object, Observer, Photosurface, PlacedScene, Scene, Source, SurfaceOptions,
 };
 use serde_json::{Value, json};
 

@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use photosurface::{Model, read_gltf_bytes};
+use photosurface::Model;
+use photosurface::read::read_gltf_bytes;
 use serde_json::{Value, json};
 
 use crate::common::glb::{MadeGlb, push};

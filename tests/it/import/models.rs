@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::common::Random;
-use photosurface::{
-    AlphaMode, DVec3, Model, Part, ReadError, Vec2, Vec4, Wrap, read_gltf_bytes, read_model,
-};
+use photosurface::material::{AlphaMode, Wrap};
+use photosurface::read::{ReadError, read_gltf_bytes, read_model};
+use photosurface::{DVec3, Model, Part, Vec2, Vec4};
 use serde_json::json;
 
 /// The rectangle that most fixtures show, as its two triangles.

@@ -6,7 +6,8 @@
 use std::path::Path;
 
 use crate::common::glb::pack;
-use photosurface::{Model, read_gltf_bytes, read_model};
+use photosurface::Model;
+use photosurface::read::{read_gltf_bytes, read_model};
 use serde_json::{Value, json};
 
 const FLOAT: usize = 5126;
@@ -128,7 +129,7 @@ impl Content {
         std::fs::write(file.path(), &bytes).expect("written");
         let from_file = read_model(file.path()).map_err(|error| error.to_string());
         let from_bytes = read_gltf_bytes(&bytes, Path::new("")).map_err(|error| error.to_string());
-        let with_notes = |(model, findings): (Model, photosurface::Findings)| {
+        let with_notes = |(model, findings): (Model, photosurface::read::Findings)| {
             let notes = findings.notes.iter().map(ToString::to_string);
             (model, notes.collect())
         };

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use photosurface::{DVec3, Model, read_model};
+use photosurface::read::read_model;
+use photosurface::{DVec3, Model};
 
 fn fixture(name: &str) -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -24,7 +25,7 @@ fn bounds(model: &Model) -> (DVec3, DVec3) {
 fn materials(model: &Model) -> Vec<(&str, [f64; 3])> {
     let parts = model.parts.iter();
     let materials = parts.map(|part| part.material.as_deref().expect("a material"));
-    let look = |material: &photosurface::Material| {
+    let look = |material: &photosurface::material::Material| {
         let [r, g, b, _] = material.base_color();
         [r, g, b]
     };
@@ -113,9 +114,9 @@ fn packed_pictures_may_differ_in_size_and_lie_but_not_exceed_the_limit() {
     std::fs::write(file("a.obj"), obj).expect("a file");
     let with = |library: &str, max_texture_pixels: u64| {
         std::fs::write(file("a.mtl"), format!("newmtl m\n{library}\n")).expect("a file");
-        let access = photosurface::Access {
+        let access = photosurface::read::Access {
             max_texture_pixels,
-            ..photosurface::Access::default()
+            ..photosurface::read::Access::default()
         };
         let (model, findings) = access.read_model(&file("a.obj")).expect("a model");
         let notes: Vec<String> = findings.notes.iter().map(ToString::to_string).collect();

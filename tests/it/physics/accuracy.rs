@@ -15,7 +15,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::common::oracle::{self, Big, Oracle, big, big_vector, small};
 use crate::common::{RELATIVE, Random, TURN, Worst, normal_limit};
-use photosurface::{DVec3, Event, PhotosurfaceMap, Velocity};
+use photosurface::light_cone::PhotosurfaceMap;
+use photosurface::spacetime::Event;
+use photosurface::{DVec3, Velocity};
 
 /// What positions, times of emission and Doppler factors may be off by, relative to themselves: half an epsilon
 /// for each of the roundings in a row that count fully. These are, close behind the observer where `w` makes up all of

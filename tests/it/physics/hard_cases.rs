@@ -21,9 +21,10 @@
 //!   `1 / theta` times the gap. It is rounded up on purpose, that of a triangle by up to `PLANE_UNITS` of itself.
 
 use crate::common::normal_limit;
-use photosurface::{
-    DVec3, Event, Lorentz, PhotosurfaceMap, Velocity, View, WorldLine, edge_gap, triangle_gap,
-};
+use photosurface::light_cone::{PhotosurfaceMap, View};
+use photosurface::spacetime::{Event, Lorentz, WorldLine};
+use photosurface::tessellate::{edge_gap, triangle_gap};
+use photosurface::{DVec3, Velocity};
 use serde_json::Value;
 
 const UNITS: f64 = 8.0;

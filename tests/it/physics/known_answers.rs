@@ -15,7 +15,9 @@
 
 use crate::common::passing::{Passing, angle_deg, assert_angle_deg, assert_close, assert_near};
 use crate::common::{RELATIVE, TURN};
-use photosurface::{DVec3, Event, Lorentz, PhotosurfaceMap, Velocity, WorldLine};
+use photosurface::light_cone::PhotosurfaceMap;
+use photosurface::spacetime::{Event, Lorentz, WorldLine};
+use photosurface::{DVec3, Velocity};
 
 /// `(1, 2, 3)` of an object that moves along +x with 0.9.
 const AT_NINE_TENTHS: DVec3 = DVec3::new(1.0, 2.0, 3.0);

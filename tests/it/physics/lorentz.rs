@@ -7,7 +7,9 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::common::oracle::{self, Big, big, big_vector, small};
 use crate::common::{RELATIVE, Random, TURN, Worst};
-use photosurface::{DVec3, Event, Lorentz, PhotosurfaceMap, Velocity, View, WorldLine};
+use photosurface::light_cone::{PhotosurfaceMap, View};
+use photosurface::spacetime::{Event, Lorentz, WorldLine};
+use photosurface::{DVec3, Velocity};
 
 /// A pair of boosts, first and second, and what their directions make of rounding.
 struct Pair {

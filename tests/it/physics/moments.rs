@@ -1,9 +1,15 @@
 //! An observer's own axes and its way to a moment: against the pure boost, and the brute force of the oracle.
 
+use photosurface::light_cone::View;
+use photosurface::render::{
+    Camera, Picture, PictureOptions, PictureSize, Projection, Scenery, Viewpoint,
+};
+use photosurface::scene::Rotation;
+use photosurface::shape::Color;
+use photosurface::spacetime::{Event, Lorentz, WorldLine};
 use photosurface::{
-    Camera, Color, DAffine3, DMat3, DQuat, DVec3, Event, Lorentz, Moment, Picture, PictureOptions,
-    PictureSize, PlacedScene, Projection, Rotation, Scene, Scenery, SurfaceOptions, Tolerance,
-    Velocity, View, Viewpoint, WorldLine, load_models,
+    DAffine3, DMat3, DQuat, DVec3, Moment, PlacedScene, Scene, SurfaceOptions, Tolerance, Velocity,
+    load_models,
 };
 use serde_json::json;
 

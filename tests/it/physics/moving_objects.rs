@@ -2,7 +2,9 @@
 
 use crate::common::oracle::{self, Oracle, big_vector, small};
 use crate::common::{RELATIVE, Random, TURN, Worst, composition_swings, normal_limit};
-use photosurface::{DVec3, Event, Velocity, View, WorldLine};
+use photosurface::light_cone::View;
+use photosurface::spacetime::{Event, WorldLine};
+use photosurface::{DVec3, Velocity};
 
 /// Two objects and an observer, all in motion in different directions, at several moments of the
 /// observer's clock: what the library makes of it in the objects' rest frames against the worldlines

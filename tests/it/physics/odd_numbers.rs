@@ -6,11 +6,16 @@ use std::error::Error;
 use std::io;
 use std::sync::Arc;
 
+use photosurface::light_cone::View;
+use photosurface::render::{Camera, PictureOptions, PictureSize, Projection, Scenery, Viewpoint};
+use photosurface::scene::{Attributes, MarkerRadius, Place, Rotation, Scale, Time, Unit};
+use photosurface::shape::Appearance;
+use photosurface::spacetime::VelocityError;
+use photosurface::tessellate::Precision;
+use photosurface::write::{Export, Format, write_glb, write_ply};
 use photosurface::{
-    Appearance, Attributes, Camera, DQuat, DVec3, Export, Format, MarkerRadius, Mesh, Object,
-    Observer, Photosurface, PictureOptions, PictureSize, Place, PlacedScene, Precision, Projection,
-    Rotation, Scale, Scene, Scenery, Shape, Source, SurfaceOptions, Time, Tolerance, Unit,
-    Velocity, VelocityError, View, Viewpoint, load_models, write_glb, write_ply,
+    DQuat, DVec3, Mesh, Object, Observer, Photosurface, PlacedScene, Scene, Shape, Source,
+    SurfaceOptions, Tolerance, Velocity, load_models,
 };
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;

@@ -27,7 +27,9 @@
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-use photosurface::{Appearance, DVec3, PhotosurfaceMap, Shape, Velocity};
+use photosurface::light_cone::PhotosurfaceMap;
+use photosurface::shape::Appearance;
+use photosurface::{DVec3, Shape, Velocity};
 use serde_json::Value;
 
 /// One line of the fixture; angles in radians.

@@ -6,7 +6,9 @@
 use std::f64::consts::PI;
 
 use crate::common::{RELATIVE, TURN, cases, normal_limit};
-use photosurface::{DVec3, MAX_RAPIDITY, PhotosurfaceMap, Velocity};
+use photosurface::light_cone::PhotosurfaceMap;
+use photosurface::spacetime::MAX_RAPIDITY;
+use photosurface::{DVec3, Velocity};
 use proptest::prelude::*;
 
 /// An observer and a point, as a user may give them and as bad luck does.

@@ -2,9 +2,10 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use photosurface::jobs::{Aim, FieldOfView, FramingError, Ghost, RenderError, Rendered};
+use photosurface::render::{Picture, PictureSize};
 use photosurface::{
-    Aim, Cancelled, DVec3, FieldOfView, FramingError, Ghost, Picture, PictureMethod,
-    PictureSettings, PictureSize, PictureView, PlacedScene, Progress, RenderError, Rendered, Scene,
+    Cancelled, DVec3, PictureMethod, PictureSettings, PictureView, PlacedScene, Progress, Scene,
     Textures, load_models, render, render_to_files,
 };
 

@@ -6,10 +6,11 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec2;
-use photosurface::{
-    Camera, Color, DVec3, Picture, PictureOptions, PictureSize, PlacedScene, Projection, Scene,
-    Scenery, SurfaceOptions, Tolerance, Viewpoint, load_models,
+use photosurface::render::{
+    Camera, Picture, PictureOptions, PictureSize, Projection, Scenery, Viewpoint,
 };
+use photosurface::shape::Color;
+use photosurface::{DVec3, PlacedScene, Scene, SurfaceOptions, Tolerance, load_models};
 use serde_json::{Value, json};
 
 use crate::common::{Random, Worst};

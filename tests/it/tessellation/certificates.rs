@@ -5,7 +5,9 @@ use crate::common::passing::angle_deg;
 use crate::common::refining::{
     Sighted, Sighting, Welded, distance_to_mesh, frozen, mesh, mix, model, plate, random_weights,
 };
-use photosurface::{Appearance, DVec3, Mesh, Shape, Source, Tolerance, Unit, Velocity};
+use photosurface::scene::Unit;
+use photosurface::shape::Appearance;
+use photosurface::{DVec3, Mesh, Shape, Source, Tolerance, Velocity};
 
 fn moving(beta: f64) -> Velocity {
     Velocity::from_beta(beta, DVec3::new(0.3, -0.2, -1.0)).unwrap()

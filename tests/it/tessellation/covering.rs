@@ -7,9 +7,11 @@ use std::sync::Arc;
 
 use crate::common::Random;
 use crate::common::refining::{Welded, mesh, model};
+use photosurface::scene::{Attributes, BUILT_IN_SCENES, Place};
+use photosurface::tessellate::Precision;
 use photosurface::{
-    Attributes, BUILT_IN_SCENES, DVec3, Mesh, Object, Observer, Photosurface, Place, PlacedScene,
-    Precision, Scene, Source, SurfaceOptions, Tolerance, Velocity, load_models,
+    DVec3, Mesh, Object, Observer, Photosurface, PlacedScene, Scene, Source, SurfaceOptions,
+    Tolerance, Velocity, load_models,
 };
 
 /// Rapidities where a chart of the sky holds a facet, where it begins to collapse, and the largest.

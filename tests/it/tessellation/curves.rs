@@ -2,7 +2,9 @@
 
 use crate::common::Random;
 use crate::common::refining::{Sighting, distance_to_mesh, mix, random_weights};
-use photosurface::{Appearance, DVec3, Precision, Shape, Source, Tolerance, Velocity};
+use photosurface::shape::Appearance;
+use photosurface::tessellate::Precision;
+use photosurface::{DVec3, Shape, Source, Tolerance, Velocity};
 
 fn moving(beta: f64) -> Velocity {
     Velocity::from_beta(beta, DVec3::new(0.3, -0.2, -1.0)).unwrap()

@@ -9,7 +9,8 @@ use crate::common::Random;
 use crate::common::oracle::{
     self, Big, Vector, cross, difference, dot, scaled, small, square_root, sum,
 };
-use photosurface::{DVec3, edge_gap, triangle_gap, triangle_gap_place};
+use photosurface::DVec3;
+use photosurface::tessellate::{edge_gap, triangle_gap, triangle_gap_place};
 
 /// How far above the true gap that of an edge may be, relatively: derived at `edge_gap`.
 const EDGE_SLACK: f64 = 32.0 * f64::EPSILON;

@@ -6,7 +6,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use photosurface::{Format, PlacedScene, Scene, load_models};
+use photosurface::write::Format;
+use photosurface::{PlacedScene, Scene, load_models};
 use serde_json::{Value, json};
 
 use super::given::Given;

@@ -1,9 +1,11 @@
 //! The whole way to a file.
 
-use photosurface::{
-    Certificate, DVec3, Export, Format, GltfFile, GltfOutput, Photosurface, PlacedScene, Playback,
-    Precision, Report, Source, SurfaceOptions, Target, WriteError, read_gltf_bytes, write_ply,
+use photosurface::read::read_gltf_bytes;
+use photosurface::tessellate::{Certificate, Precision};
+use photosurface::write::{
+    Export, Format, GltfFile, GltfOutput, Playback, Report, Target, WriteError, write_ply,
 };
+use photosurface::{DVec3, Photosurface, PlacedScene, Source, SurfaceOptions};
 
 use super::case::Case;
 use super::in_folder;

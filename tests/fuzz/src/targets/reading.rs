@@ -3,7 +3,8 @@
 use std::error::Error;
 use std::path::Path;
 
-use photosurface::{Findings, Model, ReadError, Scene, read_gltf_bytes, read_model};
+use photosurface::read::{Findings, ReadError, read_gltf_bytes, read_model};
+use photosurface::{Model, Scene};
 
 use super::in_folder;
 

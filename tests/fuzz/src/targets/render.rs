@@ -1,9 +1,9 @@
 //! The whole way to a small picture.
 
-use photosurface::{
-    Camera, Color, PictureOptions, PictureSize, PlacedScene, Precision, Projection, Scenery,
-    SurfaceOptions, Viewpoint,
-};
+use photosurface::render::{Camera, PictureOptions, PictureSize, Projection, Scenery, Viewpoint};
+use photosurface::shape::Color;
+use photosurface::tessellate::Precision;
+use photosurface::{PlacedScene, SurfaceOptions};
 
 use super::case::{Case, Picture};
 use super::in_folder;
