@@ -227,7 +227,7 @@ mod tests {
             vector("1,2")
                 .unwrap_err()
                 .to_string()
-                .contains("expected three")
+                .contains("expected 3")
         );
         assert!(
             vector("1,2,x")

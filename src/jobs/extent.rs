@@ -4,6 +4,8 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
+use crate::spacetime::harmless_scale;
+
 /// Number of directions that [`outermost`] looks in. About 20 degrees lie between two of them: what is round sticks out by
 /// less than 2 % of its radius between two places that are farthest out.
 const DIRECTIONS: usize = 128;
@@ -69,28 +71,13 @@ fn directions() -> impl Iterator<Item = DVec3> {
 
 /// A vector of the same direction whose square neither overflows nor vanishes: the vector itself wherever it is one.
 pub(super) fn scaled(vector: DVec3) -> DVec3 {
-    let largest = vector.abs().max_element();
-    if (1e-140..1e140).contains(&largest) || largest == 0.0 || !vector.is_finite() {
-        return vector;
-    }
-    // In two steps, because the reciprocal of the least numbers overflows.
-    let scale = if largest < 1.0 { 1e160 } else { 1e-160 };
-    let nearer = vector * scale;
-    nearer / nearer.abs().max_element()
-}
-
-/// The length of a vector, also where its square overflows or vanishes.
-pub(super) fn length(vector: DVec3) -> f64 {
-    let largest = vector.abs().max_element();
-    match (1e-140..1e140).contains(&largest) || !(largest > 0.0 && vector.is_finite()) {
-        true => vector.length(),
-        false => (vector / largest).length() * largest,
-    }
+    vector * harmless_scale(vector)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::spacetime::length;
 
     #[test]
     fn outermost_places_stand_for_all() {

@@ -3,9 +3,10 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use super::extent::{angle_around, bounds, length, middle_of_sky, reach, scaled};
+use super::extent::{angle_around, bounds, middle_of_sky, reach, scaled};
 use crate::pipeline::{PlacedScene, PlacedSceneError, SurfaceOptions};
 use crate::render::{Camera, CameraError, PictureSize, Projection};
+use crate::spacetime::length;
 
 /// Customary vertical field of view of the observer's pictures, in degrees.
 pub const OBSERVER_FOV_DEG: f64 = 60.0;

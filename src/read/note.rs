@@ -332,7 +332,7 @@ impl fmt::Display for Note {
                 let those = plural(*count, "vertex");
                 write!(
                     f,
-                    "{mesh}: {those} without weights follow their first joint"
+                    "{mesh}: {those} without weights: the first joint applies"
                 )
             }
             Self::Weights { mesh, count } => {

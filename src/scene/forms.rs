@@ -13,7 +13,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Error, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::{ObjectFields, Observer, SceneFields, even_steps};
+use super::steps::even_steps;
 use crate::shape::{Cone, Cuboid, Cylinder, Grid, Lattice, Rod, Shape, Sphere, Torus};
 use crate::spacetime::{Velocity, VelocityError};
 
@@ -63,9 +63,6 @@ macro_rules! keyed {
 }
 
 keyed! {
-    SceneFields: "a scene like { \"objects\": [...] }",
-    ObjectFields: "an object like { \"name\": \"ball\", \"shape\": { \"sphere\": { \"radius\": 1 } } }",
-    Observer: "an observer like { \"velocity\": { \"beta\": 0.9 } }",
     Sphere: "a sphere like { \"radius\": 1 }",
     Cuboid: "a box like { \"size\": [1, 1, 1] }",
     Cylinder: "a cylinder like { \"radius\": 1, \"height\": 2 }",

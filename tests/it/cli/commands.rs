@@ -138,7 +138,11 @@ fn stdin_and_stdout_take_the_place_of_files() {
         .error(&["stdin", "line 1", "objects"]);
     workplace
         .run_with("export - -o x.glb", b"\xff\xfe", &[])
-        .error(&["stdin", "this is neither", "give its name in place of -"]);
+        .error(&[
+            "stdin",
+            "this is neither",
+            "give its file name instead of -",
+        ]);
     workplace.run("export --split -o -").error(&["--split"]);
     workplace
         .run("export -o - --report -")
@@ -342,10 +346,10 @@ fn what_is_read_is_never_written_over() {
     let before = workplace.read("mesh.glb");
     workplace
         .run("export mesh.glb -o mesh.glb")
-        .error(&["mesh.glb", "written over"]);
+        .error(&["mesh.glb", "overwrite"]);
     workplace
         .run("export mesh.glb -o out.glb --report ./mesh.glb")
-        .error(&["written over"]);
+        .error(&["overwrite"]);
     assert_eq!(workplace.read("mesh.glb"), before);
     workplace.write(
         "scene.json",
@@ -353,7 +357,7 @@ fn what_is_read_is_never_written_over() {
     );
     workplace
         .run("export scene.json -o mesh.glb")
-        .error(&["mesh.glb", "written over"]);
+        .error(&["mesh.glb", "overwrite"]);
 }
 
 #[test]
@@ -367,7 +371,7 @@ fn no_two_outputs_are_one_file() {
     ] {
         workplace
             .run(&format!("export ball.json {arguments}"))
-            .error(&["the output ", "written over another output, "]);
+            .error(&["the output ", "overwrite another output, "]);
         assert_eq!(workplace.files(), ["ball.json", "square.obj"]);
     }
     #[cfg(unix)]

@@ -384,10 +384,10 @@ fn names_of_every_script_are_kept_in_files() {
         "as the source has it"
     );
     assert!(
-        run.stderr.contains("note: out.glb: some programs break")
+        run.stderr.contains("note: out.glb: names changed, because")
             && run
                 .stderr
-                .contains("\"ящик_车身.1\" is \"ящик_车身_1\", and 1 name more"),
+                .contains("\"ящик_车身.1\" became \"ящик_车身_1\", and 1 name more"),
         "{run}"
     );
 }

@@ -91,7 +91,7 @@ fn impossible_flags_are_refused_by_name() {
         .error(&["--direction", "not zero"]);
     workplace
         .run("export --direction 1,2")
-        .error(&["--direction", "expected three"]);
+        .error(&["--direction", "expected 3"]);
     workplace
         .run("export --steps 1..2")
         .error(&["--steps", "FROM..TO/COUNT"]);

@@ -413,10 +413,10 @@ fn errors_name_the_flag() {
         ("--plot-size 639x480", ["--plot-size", "at least 640 x 480"]),
         ("--plot-size 960", ["--plot-size", "expected WxH"]),
         ("--json - --csv -", ["--json and --csv", "stdout"]),
-        ("--json a --csv ./a", ["./a", "written over another output"]),
+        ("--json a --csv ./a", ["./a", "overwrite another output"]),
         (
             "--json a_rays --csv a",
-            ["a_rays", "written over another output"],
+            ["a_rays", "overwrite another output"],
         ),
         ("--csv -", ["--csv", "choose one with --only"]),
         ("--pixel-samples 2,1,2", ["--pixel-samples", "2 rays"]),

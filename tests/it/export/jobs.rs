@@ -273,7 +273,7 @@ fn settings_that_do_not_go_together_are_refused_before_the_work() {
                 report,
                 ..default()
             },
-            "over another output",
+            "another output",
         ),
         ("out.stl", default(), "out.stl: unknown extension"),
         ("no/out.glb", default(), "no/out.glb"),

@@ -128,7 +128,7 @@ fn a_vertex_without_weights_follows_its_first_joint() {
         notes,
         [
             "node \"cube\": skin applied in its default pose",
-            "mesh \"cube\": 1 vertex without weights taken to follow the first joint that each names"
+            "mesh \"cube\": 1 vertex without weights: the first joint applies"
         ]
     );
 }
@@ -317,8 +317,7 @@ fn the_largest_index_of_a_type_is_the_vertex_of_that_number() {
             assert_eq!(
                 notes,
                 [format!(
-                    "meshes[0].primitives[0] (mesh \"made\"), indices: {last}, which glTF reserves, taken 1 time for \
-                     the vertex of that number"
+                    "meshes[0].primitives[0] (mesh \"made\"), indices: {last}, reserved by glTF, used 1 time as the index of a vertex"
                 )]
             );
         }

@@ -1,0 +1,47 @@
+//! Why well-formed values do not make a scene.
+
+use thiserror::Error;
+
+use super::steps::MAX_STEPS;
+
+/// Why well-formed values do not make a scene.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum InvalidScene {
+    /// Nothing to see.
+    #[error("the scene has no objects, expected at least one")]
+    NoObjects,
+    /// An object without a name.
+    #[error("objects[{0}] has an empty name, expected a name for the output")]
+    EmptyName(usize),
+    /// Two objects of one name.
+    #[error("two objects are named \"{0}\", expected a name of its own for each")]
+    RepeatedName(String),
+    /// No source or two.
+    #[error("object \"{name}\" has {found}, expected either \"file\" or \"shape\"")]
+    Source {
+        /// Which object.
+        name: String,
+        /// What it has.
+        found: &'static str,
+    },
+    /// Looks given for something that brings its own.
+    #[error(
+        "object \"{name}\" comes from a file, which has its own colours; \"{field}\" is for shapes"
+    )]
+    LooksOfFile {
+        /// Which object.
+        name: String,
+        /// The key that does not belong.
+        field: &'static str,
+    },
+    /// No steps at all.
+    #[error("the list of steps is empty, expected at least one proper time")]
+    NoSteps,
+    /// Too many or too few evenly spaced steps.
+    #[error("count is {0}, expected 1 to {MAX_STEPS} steps")]
+    StepCount(usize),
+    /// A step that is not a number.
+    #[error("step {0} is {1}, expected a finite proper time")]
+    Step(usize, f64),
+}

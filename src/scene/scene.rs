@@ -1,0 +1,182 @@
+//! A scene: an observer, objects and steps.
+
+use std::collections::HashSet;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::forms::{self, FromObject, Keyed, Steps};
+use super::{Attributes, InvalidScene, Object, Observer, Tolerance};
+use crate::spacetime::Moment;
+
+/// A scene: an observer, objects, and the steps at which the observer looks.
+///
+/// Everything is given in the scene frame: c = 1, y up, lengths and times in one unit.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(try_from = "FromObject<SceneFields>")]
+#[schemars(with = "SceneFields")]
+pub struct Scene {
+    title: Option<String>,
+    observer: Observer,
+    objects: Vec<Object>,
+    steps: Vec<f64>,
+    tolerance: Tolerance,
+    attributes: Attributes,
+}
+
+impl Scene {
+    /// A scene of `objects` seen by `observer` at the observation event alone.
+    ///
+    /// # Errors
+    ///
+    /// No objects, or two of one name.
+    pub fn new(observer: Observer, objects: Vec<Object>) -> Result<Self, InvalidScene> {
+        if objects.is_empty() {
+            return Err(InvalidScene::NoObjects);
+        }
+        let mut names = HashSet::with_capacity(objects.len());
+        for (index, object) in objects.iter().enumerate() {
+            if object.name.is_empty() {
+                return Err(InvalidScene::EmptyName(index));
+            }
+            if !names.insert(&object.name) {
+                return Err(InvalidScene::RepeatedName(object.name.clone()));
+            }
+        }
+        Ok(Self {
+            title: None,
+            observer,
+            objects,
+            steps: vec![0.0],
+            tolerance: Tolerance::default(),
+            attributes: Attributes::default(),
+        })
+    }
+
+    /// The scene at these proper times of the observer, counted from the observation event.
+    ///
+    /// # Errors
+    ///
+    /// No steps, or one that is not finite.
+    pub fn with_steps(mut self, steps: Vec<f64>) -> Result<Self, InvalidScene> {
+        if steps.is_empty() {
+            return Err(InvalidScene::NoSteps);
+        }
+        if let Some(index) = steps.iter().position(|step| !step.is_finite()) {
+            return Err(InvalidScene::Step(index, steps[index]));
+        }
+        self.steps = steps;
+        Ok(self)
+    }
+
+    /// The same scene seen by another observer.
+    #[must_use]
+    pub fn with_observer(mut self, observer: Observer) -> Self {
+        self.observer = observer;
+        self
+    }
+
+    /// The scene with another tolerance, for all objects that have none of their own.
+    #[must_use]
+    pub fn with_tolerance(mut self, tolerance: Tolerance) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// The scene with this tolerance for all objects, whatever they had.
+    #[must_use]
+    pub fn with_tolerance_for_all(mut self, tolerance: Tolerance) -> Self {
+        self.tolerance = tolerance;
+        for object in &mut self.objects {
+            object.tolerance = None;
+        }
+        self
+    }
+
+    /// The scene with these attributes asked for, and no others.
+    #[must_use]
+    pub fn with_attributes(mut self, attributes: Attributes) -> Self {
+        self.attributes = attributes;
+        self
+    }
+
+    /// What is asked for at every vertex.
+    pub fn attributes(&self) -> Attributes {
+        self.attributes
+    }
+
+    /// How far the photosurface of an object may be from the true one.
+    pub fn tolerance(&self, object: &Object) -> Tolerance {
+        object.tolerance.unwrap_or(self.tolerance)
+    }
+
+    /// The scene's title.
+    pub fn title(&self) -> Option<&str> {
+        self.title.as_deref()
+    }
+
+    /// Who sees the scene.
+    pub fn observer(&self) -> &Observer {
+        &self.observer
+    }
+
+    /// What there is to see; at least one, with names of their own.
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
+    }
+
+    /// Proper times of the observer at which the scene is seen; at least one.
+    pub fn steps(&self) -> &[f64] {
+        &self.steps
+    }
+
+    /// Event, velocity and axes of the observer at one step, counted from 0; `None` where the scene has no such step.
+    pub fn moment(&self, step: usize) -> Option<Moment> {
+        let proper_time = self.steps.get(step)?;
+        Some(self.observer.moment(*proper_time))
+    }
+}
+
+/// A scene as a file writes it.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "photosurface scene")]
+struct SceneFields {
+    /// What the scene shows, for people.
+    title: Option<String>,
+    /// The observer; at rest at the origin at time 0 if absent.
+    #[serde(default, deserialize_with = "forms::from_object")]
+    #[schemars(with = "Observer")]
+    observer: Observer,
+    /// The objects.
+    #[schemars(length(min = 1))]
+    objects: Vec<Object>,
+    /// Proper times of the observer after the observation event: a list, or `from`, `to` and `count`.
+    /// The observation event alone if absent.
+    #[serde(default)]
+    steps: Steps,
+    /// How far photosurfaces may be from the true ones; a thousandth of their diagonal if absent.
+    #[serde(default)]
+    tolerance: Tolerance,
+    /// What is computed and written for every vertex beside its place; nothing if absent.
+    #[serde(default)]
+    attributes: Attributes,
+}
+
+impl TryFrom<FromObject<SceneFields>> for Scene {
+    type Error = InvalidScene;
+
+    fn try_from(FromObject(fields): FromObject<SceneFields>) -> Result<Self, InvalidScene> {
+        let scene = Self::new(fields.observer, fields.objects)?.with_steps(fields.steps.0)?;
+        Ok(Self {
+            title: fields.title,
+            tolerance: fields.tolerance,
+            attributes: fields.attributes,
+            ..scene
+        })
+    }
+}
+
+impl Keyed for SceneFields {
+    const EXPECTED: &'static str = "a scene like { \"objects\": [...] }";
+}
