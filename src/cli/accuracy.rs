@@ -9,8 +9,8 @@ use photosurface::write::Format;
 use photosurface::{PlacedScene, Scene, SurfaceOptions, Tolerance};
 
 use super::args::{Given, whole_number};
-use super::export::in_words_of_flags;
 use super::messages::{Verbosity, grouped};
+use super::wording::in_words_of_flags;
 
 /// Of more objects than this only so many are named.
 const NAMED: usize = 4;

@@ -10,8 +10,9 @@ use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, predicted, total
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print_if_open, shown};
-use super::output::{FileFormat, or_ply};
+use super::output::FileFormat;
 use super::status::Status;
+use super::wording::or_ply;
 
 /// Validate a scene or a mesh, and predict the export
 ///

@@ -5,7 +5,7 @@ use std::io::{IsTerminal, Write, stdout};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use anyhow::{Context, anyhow, ensure};
+use anyhow::{Context, ensure};
 use clap::ValueEnum;
 use photosurface::jobs::{ExportError, ExportLevel, export_levels, write_report};
 use photosurface::pipeline::Facts;
@@ -17,8 +17,9 @@ use super::accuracy::{AccuracyArgs, DetailArgs};
 use super::args::{InputArgs, ObserverArgs, number};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print, size, stdout_is_closed};
-use super::output::{Bar, FileFormat, check_destinations, from_first_to_last, is_stdout, or_ply};
+use super::output::{Bar, FileFormat, check_destinations, from_first_to_last, is_stdout};
 use super::status::Status;
+use super::wording::{in_words_of_flags, or_ply};
 
 /// Write photosurfaces as meshes
 ///
@@ -186,26 +187,6 @@ fn export(args: &ExportArgs, level: ExportLevel) -> anyhow::Result<bool> {
         verbosity.result(summary(&exported, has_marker));
     }
     Ok(args.accuracy.is_kept(&exported.tally, verbosity))
-}
-
-/// The error with the flags that the settings come from.
-pub(super) fn in_words_of_flags(error: ExportError) -> anyhow::Error {
-    match error {
-        ExportError::NoTime => anyhow!("--animate: a .ply has no time, expected .glb or .gltf"),
-        ExportError::OneStep => anyhow!(
-            "--animate: the scene has one step, expected at least two, such as --steps -6..6/7"
-        ),
-        ExportError::FramesPerSecond(number) => {
-            anyhow!("--fps is {number:?}, expected a number from 0.001 to 1000")
-        }
-        ExportError::MorphingAttributes => anyhow!(
-            "--animate=morph shows one mesh, and attributes differ from step to step; use --animate=frames"
-        ),
-        ExportError::RepeatedLevel(tolerance) => {
-            anyhow!("--lod names the tolerance {tolerance} twice")
-        }
-        error => error.into(),
-    }
 }
 
 impl ExportArgs {

@@ -16,5 +16,6 @@ mod output;
 mod render;
 mod schema;
 mod status;
+mod wording;
 
 pub(crate) use command::run;

@@ -4,11 +4,10 @@ use std::io::{IsTerminal, stderr};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use anyhow::anyhow;
 use indicatif::{ProgressBar, ProgressStyle};
 use photosurface::jobs::check_outputs;
-use photosurface::write::{Format, WriteError};
-use photosurface::{Cancelled, PlacedScene, Progress};
+use photosurface::write::Format;
+use photosurface::{Cancelled, Progress};
 
 use super::messages::Verbosity;
 
@@ -57,18 +56,6 @@ pub(super) fn check_destinations(
 ) -> anyhow::Result<()> {
     let written = written.into_iter().filter(|file| !is_stdout(file));
     Ok(check_outputs(written, read)?)
-}
-
-/// An error of numbers that the format cannot hold, with advice where another format could.
-pub(super) fn or_ply(error: WriteError, placed: &PlacedScene) -> anyhow::Error {
-    let is_of_numbers = matches!(
-        error,
-        WriteError::Range { .. } | WriteError::TooFar { .. } | WriteError::TooSmall { .. }
-    );
-    match is_of_numbers && Format::Ply.check_range(placed).is_ok() {
-        true => anyhow!("{error}; or write a .ply, whose 64-bit numbers hold it"),
-        false => error.into(),
-    }
 }
 
 /// A bar of so many things, on a terminal.

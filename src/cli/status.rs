@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use photosurface::Cancelled;
-use photosurface::jobs::ExportError;
+use photosurface::jobs::{ExportError, RenderError};
 use photosurface::write::WriteError;
 
 use super::messages;
@@ -57,6 +57,7 @@ fn is_cancelled(error: &anyhow::Error) -> bool {
     error.chain().any(|cause| {
         matches!(cause.downcast_ref(), Some(WriteError::Cancelled))
             || matches!(cause.downcast_ref(), Some(ExportError::Cancelled))
+            || matches!(cause.downcast_ref(), Some(RenderError::Cancelled))
             || cause.is::<Cancelled>()
     })
 }

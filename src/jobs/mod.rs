@@ -4,14 +4,17 @@ mod ahead;
 mod budget;
 mod clock;
 mod export;
+mod export_settings;
 mod extent;
 mod files;
 mod framing;
 mod guides;
 mod input;
 mod load;
+mod picture_settings;
 mod pictures;
 mod progress;
+mod rendered;
 mod sheet;
 mod tally;
 mod views;
@@ -19,17 +22,16 @@ mod work;
 
 pub use budget::{DEFAULT_MAX_TRIANGLES, Fitted};
 pub use export::{
-    ExportError, ExportLevel, ExportSettings, Exported, FittedExport, export, export_levels,
-    levels_of_detail, write_report,
+    ExportLevel, Exported, FittedExport, export, export_levels, levels_of_detail, write_report,
 };
+pub use export_settings::{ExportError, ExportSettings};
 pub use files::{OutputError, check_outputs, file_for_each_step, with_suffix};
 pub use framing::{Aim, CameraSettings, FieldOfView, FramingError, OBSERVER_FOV_DEG};
 pub use guides::{Ghost, Guides};
 pub use input::{InputError, MAX_SCENE_BYTES, SceneTextError, scene_from_bytes, stand_off};
 pub use load::{FileFindings, LoadError, load_models};
-pub use pictures::{
-    EmptyView, PictureMethod, PictureSettings, PictureView, RenderError, Rendered, ViewCost,
-    render, render_to_files,
-};
+pub use picture_settings::{PictureMethod, PictureSettings, PictureView};
+pub use pictures::{render, render_to_files};
 pub use progress::{Cancelled, Progress};
+pub use rendered::{EmptyView, RenderError, Rendered, ViewCost};
 pub use tally::Tally;

@@ -3,23 +3,11 @@
 use glam::DVec3;
 
 use super::guides::label;
-use super::pictures::RenderError;
+use super::picture_settings::{GAP, sheet_size};
+use super::rendered::RenderError;
 use super::views::Views;
-use crate::render::{CameraError, Picture, PictureSize};
+use crate::render::Picture;
 use crate::shape::Color;
-
-/// Pixels between the views of a sheet.
-const GAP: u32 = 4;
-
-/// The size of a sheet of so many steps, with two views of `size` for each.
-pub(super) fn sheet_size(size: PictureSize, steps: usize) -> Result<PictureSize, CameraError> {
-    let columns = (steps as u64).saturating_mul(u64::from(size.width() + GAP));
-    let width = columns.saturating_sub(u64::from(GAP));
-    PictureSize::new(
-        u32::try_from(width).unwrap_or(u32::MAX),
-        2 * size.height() + GAP,
-    )
-}
 
 /// For each step what the observer sees and, below, the photosurface from outside, framed by a camera at one distance or
 /// at the place `from`.

@@ -7,10 +7,9 @@ use glam::DVec3;
 
 use super::extent::{middle_of_sky, outermost};
 use super::framing::{OutsideCamera, seen_vertices};
-use super::pictures::{
-    EmptyView, PictureMethod, PictureSettings, PictureView, RenderError, Rendered, ViewCost,
-};
+use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
 use super::progress::Progress;
+use super::rendered::{EmptyView, RenderError, Rendered, ViewCost};
 use crate::pipeline::{PlacedScene, PlacedSceneError};
 use crate::render::{Camera, Picture, PictureOptions, Scenery, Strokes, Textures, Viewpoint};
 use crate::shape::Color;

@@ -2,7 +2,8 @@
 
 use thiserror::Error;
 
-use super::steps::MAX_STEPS;
+/// Maximum number of evenly spaced steps of one scene: a guard against slips of the pen.
+pub(super) const MAX_STEPS: usize = 100_000;
 
 /// Why well-formed values do not make a scene.
 #[derive(Clone, Debug, PartialEq, Error)]

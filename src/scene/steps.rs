@@ -1,9 +1,6 @@
 //! Steps: the proper times at which the observer looks.
 
-use super::InvalidScene;
-
-/// Maximum number of evenly spaced steps of one scene: a guard against slips of the pen.
-pub(super) const MAX_STEPS: usize = 100_000;
+use super::error::{InvalidScene, MAX_STEPS};
 
 /// `count` evenly spaced proper times, the first `from`, the last `to`; `from` alone if `count` is 1.
 ///

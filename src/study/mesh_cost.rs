@@ -7,7 +7,9 @@ use serde::Serialize;
 use tempfile::TempDir;
 
 use super::measured::{Measured, measure};
+use super::median::median;
 use super::memory::{peak_bytes, restart_peak};
+use super::settings::MEASUREMENTS;
 use super::uniform::{UniformCost, uniform_cost};
 use super::{CostSettings, StudyError};
 use crate::jobs::{Cancelled, ExportError, ExportLevel, ExportSettings, Progress, export_levels};
@@ -85,9 +87,6 @@ impl Seconds {
         self.predict + self.photosurface + self.write
     }
 }
-
-/// What is measured of each tolerance beside its runs: the error, and uniform subdivision.
-pub(super) const MEASUREMENTS: usize = 2;
 
 /// An export may make so many times the triangles that were predicted before its budget ends it.
 const PREDICTION_ROOM: u64 = 2;
@@ -247,16 +246,6 @@ fn medians(times: &[Seconds]) -> Seconds {
         predict: median(|times| times.predict),
         photosurface: median(|times| times.photosurface),
         write: median(|times| times.write),
-    }
-}
-
-/// The one in the middle, or the mean of two.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    match values.len() % 2 {
-        0 => 0.5 * (values[middle - 1] + values[middle]),
-        _ => values[middle],
     }
 }
 

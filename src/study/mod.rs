@@ -5,6 +5,7 @@
 mod cost_study;
 mod error;
 mod measured;
+mod median;
 mod memory;
 mod mesh_cost;
 #[cfg(feature = "plot")]

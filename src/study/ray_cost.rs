@@ -6,7 +6,7 @@ use std::time::Instant;
 use glam::{DVec2, Vec3};
 use serde::Serialize;
 
-use super::mesh_cost::median;
+use super::median::median;
 use super::random::Random;
 use crate::jobs::{Cancelled, Progress};
 use crate::pipeline::PlacedScene;

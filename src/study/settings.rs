@@ -2,9 +2,11 @@
 
 use std::num::{NonZeroU32, NonZeroUsize};
 
-use super::mesh_cost;
 use super::{RaySettings, StudyError};
 use crate::scene::Tolerance;
+
+/// What is measured of each tolerance beside its runs: the error, and uniform subdivision.
+pub(super) const MEASUREMENTS: usize = 2;
 
 /// The tolerances and pictures that a study looks at, and how closely.
 #[derive(Clone, Debug)]
@@ -44,7 +46,7 @@ impl CostSettings {
     pub fn pieces(&self) -> usize {
         let repeats = self.repeats.get();
         let rays = self.rays.as_ref();
-        self.tolerances.len() * (repeats + mesh_cost::MEASUREMENTS)
+        self.tolerances.len() * (repeats + MEASUREMENTS)
             + rays.map_or(0, |rays| rays.pieces(repeats))
     }
 }

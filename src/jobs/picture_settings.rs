@@ -1,0 +1,171 @@
+//! Which pictures of a scene are drawn, from where and how.
+
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+
+use super::files::file_for_each_step;
+use super::framing::{Aim, CameraSettings, FieldOfView, OBSERVER_FOV_DEG};
+use super::guides::Guides;
+use crate::pipeline::SurfaceOptions;
+use crate::render::{CameraError, PictureOptions, PictureSize};
+use crate::shape::Color;
+use crate::tessellate::Precision;
+
+/// Pixels between the views of a sheet.
+pub(super) const GAP: u32 = 4;
+
+/// The size of a sheet of so many steps, with two views of `size` for each.
+pub(super) fn sheet_size(size: PictureSize, steps: usize) -> Result<PictureSize, CameraError> {
+    let columns = (steps as u64).saturating_mul(u64::from(size.width() + GAP));
+    let width = columns.saturating_sub(u64::from(GAP));
+    PictureSize::new(
+        u32::try_from(width).unwrap_or(u32::MAX),
+        2 * size.height() + GAP,
+    )
+}
+
+/// Which pictures of a scene are drawn, and from where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PictureView {
+    /// What the observer sees: one picture for each step.
+    Observer(PictureMethod),
+    /// Photosurfaces from any other place, together with the observer's marker, if the scene has one.
+    Outside {
+        /// The place of the camera in the observer's frame, in scene units; with `None` it is where everything at every
+        /// step is in the picture.
+        from: Option<DVec3>,
+        /// Whether the photosurfaces of all steps are in one picture; if not, there is one picture for each step.
+        together: bool,
+    },
+    /// One picture of all steps, a column for each: above, what the observer sees, labelled with its proper time; below,
+    /// the photosurface from outside, all at one scale.
+    Sheet {
+        /// How the observer's views are drawn.
+        method: PictureMethod,
+        /// The place of all cameras outside, as for [`PictureView::Outside`].
+        from: Option<DVec3>,
+    },
+}
+
+/// How the observer's view is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PictureMethod {
+    /// By rays of light, followed back to where they came from: exact at every pixel.
+    #[default]
+    Rays,
+    /// By looking at the photosurfaces, within their tolerance.
+    Mesh,
+}
+
+/// Everything that the pictures of a scene depend on beside the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PictureSettings {
+    /// Which pictures are drawn, and from where.
+    pub view: PictureView,
+    /// The cameras. On a sheet the size is that of each view.
+    pub camera: CameraSettings,
+    /// Number of rays per pixel along each side: N is N x N rays.
+    pub samples: NonZeroU32,
+    /// The colour where nothing is seen.
+    pub background: Color,
+    /// Marks in views from outside.
+    pub guides: Guides,
+    /// How photosurfaces are made where they are in the pictures. A number of triangles that they may have together is a
+    /// matter of the placed scene: see [`Fitted`](crate::jobs::Fitted).
+    pub surface_options: SurfaceOptions,
+}
+
+impl PictureSettings {
+    /// The settings that the command `photosurface render` starts from: 1280 by 720 pixels, on a sheet 320 by 240 for each
+    /// view, nine rays per pixel; 60 degrees for the observer, and cameras that have everything in the picture otherwise.
+    pub fn new(view: PictureView) -> Self {
+        let [width, height] = match view {
+            PictureView::Sheet { .. } => [320, 240],
+            _ => [1280, 720],
+        };
+        let field_of_view = match view {
+            PictureView::Observer(_) => FieldOfView::Degrees(OBSERVER_FOV_DEG),
+            _ => FieldOfView::Fitting,
+        };
+        let options = PictureOptions::default();
+        Self {
+            view,
+            camera: CameraSettings {
+                size: PictureSize::new(width, height).expect("both sides are within the limits"),
+                field_of_view,
+                aim: Aim::Middle,
+            },
+            samples: NonZeroU32::new(options.samples).unwrap_or(NonZeroU32::MIN),
+            background: options.background,
+            guides: Guides::default(),
+            surface_options: SurfaceOptions {
+                precision: Precision::Double,
+                ..SurfaceOptions::default()
+            },
+        }
+    }
+
+    /// The size of the pictures of a scene with so many steps, in pixels: that of the camera, or of the whole sheet.
+    ///
+    /// # Errors
+    ///
+    /// A sheet with more pixels along one side than a picture may have.
+    pub fn picture_size(&self, steps: usize) -> Result<PictureSize, CameraError> {
+        match self.view {
+            PictureView::Sheet { .. } => sheet_size(self.camera.size, steps),
+            _ => Ok(self.camera.size),
+        }
+    }
+
+    /// Number of pictures of a scene with so many steps.
+    pub fn picture_count(&self, steps: usize) -> usize {
+        match self.view {
+            PictureView::Sheet { .. } | PictureView::Outside { together: true, .. } => 1,
+            _ => steps,
+        }
+    }
+
+    /// The files that [`render_to_files`] makes of a scene with so many steps, in the order of the pictures: `path` itself
+    /// for one picture, `NAME_step000.png`, `NAME_step001.png` and so on beside it for several.
+    pub fn files(&self, path: &Path, steps: usize) -> Vec<PathBuf> {
+        match self.picture_count(steps) {
+            1 => vec![path.to_owned()],
+            count => file_for_each_step(path, count),
+        }
+    }
+
+    /// Number of rows of all views of a scene with so many steps: the pieces of work that [`Progress`] hears of.
+    pub(super) fn rows(&self, steps: usize) -> usize {
+        let views = match self.view {
+            PictureView::Sheet { .. } => 2 * steps,
+            _ => self.picture_count(steps),
+        };
+        self.camera.size.height() as usize * views
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn several_pictures_have_a_file_for_each_step() {
+        let observer = PictureSettings::new(PictureView::Observer(PictureMethod::Rays));
+        let sheet = PictureSettings::new(PictureView::Sheet {
+            method: PictureMethod::Rays,
+            from: None,
+        });
+        let path = Path::new("folder/out.of.png");
+        assert_eq!(observer.files(path, 1), [path]);
+        assert_eq!(sheet.files(path, 7), [path]);
+        let files = observer.files(path, 1001);
+        assert_eq!(files[0], Path::new("folder/out.of_step000.png"));
+        assert_eq!(files[1000], Path::new("folder/out.of_step1000.png"));
+        assert_eq!(
+            observer.files(Path::new("out"), 2)[1],
+            Path::new("out_step001")
+        );
+    }
+}
