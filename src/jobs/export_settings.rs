@@ -7,10 +7,7 @@ use thiserror::Error;
 use super::{DEFAULT_MAX_TRIANGLES, OutputError};
 use crate::pipeline::PlacedScene;
 use crate::scene::Tolerance;
-use crate::write::{Format, Playback, StageTime, WriteError};
-
-/// Frames a second that an animation may have.
-const FRAMES_PER_SECOND: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+use crate::write::{FRAMES_PER_SECOND, Format, Playback, StageTime, WriteError};
 
 /// What an export makes of a placed scene.
 #[derive(Clone, Debug)]

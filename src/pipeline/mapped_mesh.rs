@@ -1,44 +1,16 @@
-//! A mesh at rest as one observer sees it, and what else is known of its vertices.
+//! A mesh at rest as one observer sees it.
 
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
 use crate::light_cone::{Batch, Extremes, View};
 use crate::mesh::Mesh;
-use crate::scene::Attributes;
 
 /// Vertices a thread takes at a time: enough to outweigh handing them over.
-const VERTICES_PER_JOB: usize = 4096;
+pub(super) const VERTICES_PER_JOB: usize = 4096;
 
 /// And where it makes arrays of them, few enough for the cache of a core.
 const VERTICES_AT_ONCE: usize = 1024;
-
-/// Numbers at every vertex, those that were asked for.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub struct VertexData {
-    /// Frequency seen over frequency emitted.
-    pub doppler_factors: Option<Vec<f64>>,
-    /// When the light left that is seen now, in the observer's frame, counted from now.
-    pub emission_times: Option<Vec<f64>>,
-    /// Where the vertex is in the object's rest frame, the object's origin at its origin.
-    pub rest_positions: Option<Vec<DVec3>>,
-}
-
-impl VertexData {
-    pub(super) fn new(view: &View, rest: &Mesh, wanted: Attributes) -> Self {
-        let at_each = |value: &(dyn Fn(DVec3) -> f64 + Sync)| {
-            let jobs = rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
-            jobs.map(|&position| value(position)).collect()
-        };
-        Self {
-            doppler_factors: (wanted.doppler)
-                .then(|| at_each(&|position| view.doppler_factor(position))),
-            emission_times: (wanted.emission_time)
-                .then(|| at_each(&|position| view.emission_time(position))),
-            rest_positions: wanted.rest_position.then(|| rest.positions().to_vec()),
-        }
-    }
-}
 
 /// A mesh as it is seen, and what all its vertices have in common.
 #[derive(Clone, Debug)]

@@ -11,13 +11,14 @@ mod placed_object;
 mod placed_scene;
 mod plan;
 mod surface_options;
+mod vertex_data;
 
 pub use budget::Prediction;
 pub use error::PlacedSceneError;
 pub use facts::{Facts, SceneFacts};
-pub use mapped_mesh::VertexData;
 pub use names::step_label;
 pub use photosurface::Photosurface;
 pub use placed_scene::PlacedScene;
 pub(crate) use plan::Unrefined;
 pub use surface_options::SurfaceOptions;
+pub use vertex_data::{VertexData, VertexValues};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::facts::Facts;
-use super::mapped_mesh::VertexData;
+use super::vertex_data::VertexData;
 use crate::material::Material;
 use crate::mesh::Mesh;
 use crate::scene::Attributes;
@@ -31,10 +31,6 @@ pub struct Photosurface {
 impl Photosurface {
     /// What was asked for of its vertices.
     pub fn attributes(&self) -> Attributes {
-        Attributes {
-            doppler: self.vertex_data.doppler_factors.is_some(),
-            emission_time: self.vertex_data.emission_times.is_some(),
-            rest_position: self.vertex_data.rest_positions.is_some(),
-        }
+        self.vertex_data.attributes()
     }
 }

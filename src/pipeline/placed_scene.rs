@@ -6,10 +6,10 @@ use glam::DVec3;
 use serde_json::Value;
 
 use super::facts::{Facts, SceneFacts};
-use super::mapped_mesh::VertexData;
 use super::names::{self, UniqueNames, step_label};
 use super::placed_object::{PlacedObject, Shaped, triangle_count};
 use super::plan::{Plan, Surface, Unrefined};
+use super::vertex_data::VertexData;
 use super::{Photosurface, PlacedSceneError, SurfaceOptions};
 use crate::light_cone::View;
 use crate::material::{Model, Part};

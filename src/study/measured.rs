@@ -7,7 +7,7 @@ use super::random::Random;
 use super::true_surface::TrueSurface;
 use crate::light_cone::View;
 use crate::pipeline::{Photosurface, PlacedScene, SurfaceOptions};
-use crate::scene::{Attributes, Unit};
+use crate::scene::{Attribute, Attributes, Unit};
 
 /// Places that a thread takes at a time; each lot has random numbers of its own, so that the result does not depend
 /// on how many threads there are.
@@ -59,10 +59,7 @@ pub(super) fn measure(
 ) -> Measured {
     // With places at rest, which no refined mesh holds otherwise.
     let wanted = SurfaceOptions {
-        attributes: Attributes {
-            rest_position: true,
-            ..Attributes::default()
-        },
+        attributes: Attributes::default().with(Attribute::RestPosition),
         ..wanted
     };
     let mut worst = Measured::default();
@@ -96,7 +93,7 @@ fn of_one(
     surface: Option<&TrueSurface>,
     places: usize,
 ) -> Measured {
-    let rest = photosurface.vertex_data.rest_positions.as_deref();
+    let rest = photosurface.vertex_data.rest_positions();
     let rest = rest.expect("rest positions were asked for");
     let (seen, triangles) = (photosurface.mesh.positions(), photosurface.mesh.triangles());
     let certificate = &photosurface.facts.certificate;

@@ -1,5 +1,7 @@
 //! What goes into one file, and how its steps follow each other.
 
+use std::ops::RangeInclusive;
+
 use crate::material::Part;
 use crate::pipeline::{Photosurface, SceneFacts};
 
@@ -16,6 +18,9 @@ pub struct Export<'a> {
     /// How steps follow each other, where the format has time; `None` for all at once.
     pub playback: Option<Playback>,
 }
+
+/// Frames per second that an animation may have.
+pub(crate) const FRAMES_PER_SECOND: RangeInclusive<f64> = 1e-3..=1e3;
 
 /// How the steps of a scene are shown one after another, in glTF.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::pipeline::SurfaceOptions;
-use crate::scene::{Attributes, Scene};
+use crate::scene::{Attribute, Attributes, Scene};
 use crate::tessellate::Precision;
 
 /// A format that photosurfaces are written in.
@@ -40,10 +40,9 @@ impl Format {
 
     /// What a file of the scene holds of every vertex: what the scene asks for, and in a PLY the Doppler factor.
     pub fn attributes(self, scene: &Scene) -> Attributes {
-        let asked_for = scene.attributes();
-        Attributes {
-            doppler: asked_for.doppler || self == Self::Ply,
-            ..asked_for
+        match self {
+            Self::Glb | Self::Gltf => scene.attributes(),
+            Self::Ply => scene.attributes().with(Attribute::Doppler),
         }
     }
 

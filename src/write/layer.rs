@@ -8,8 +8,8 @@ use super::pack::first_beyond_f32;
 use super::{Export, WriteError};
 use crate::material::{Material, Part};
 use crate::mesh::Mesh;
-use crate::pipeline::{Facts, Photosurface, VertexData};
-use crate::scene::Attributes;
+use crate::pipeline::{Facts, Photosurface, VertexData, VertexValues};
+use crate::scene::{Attribute, Attributes};
 
 /// One mesh of a file.
 #[derive(Clone, Copy, Debug)]
@@ -29,19 +29,19 @@ pub(super) struct Layer<'a> {
 pub(super) struct Scalar<'a> {
     /// In lower case; glTF writes it in upper case behind an underscore.
     pub(super) name: &'static str,
+    attribute: Attribute,
+    /// Which number of the attribute.
+    column: usize,
     values: Values<'a>,
 }
 
 /// Where the numbers come from.
 #[derive(Clone, Copy, Debug)]
 enum Values<'a> {
-    Known(&'a [f64]),
-    /// Those of what is at rest, each the same.
-    One,
-    /// When what is at rest is seen.
+    /// A photosurface, which knows them.
+    Known(&'a VertexValues),
+    /// Vertices at rest in the observer's frame, at these positions.
     AtRest(&'a [DVec3]),
-    /// One coordinate.
-    Axis(&'a [DVec3], usize),
 }
 
 /// What numbers of a file may be.
@@ -51,17 +51,6 @@ pub(super) enum Numbers {
     Single,
     /// `f64` where `f32` is not enough.
     Any,
-}
-
-impl Values<'_> {
-    /// How many there are; `None` where there are as many as are asked for.
-    fn count(&self) -> Option<usize> {
-        match self {
-            Self::Known(values) => Some(values.len()),
-            Self::One => None,
-            Self::AtRest(positions) | Self::Axis(positions, _) => Some(positions.len()),
-        }
-    }
 }
 
 impl Scalar<'_> {
@@ -77,10 +66,12 @@ impl Scalar<'_> {
     /// The number at a vertex.
     pub(super) fn at(&self, vertex: usize) -> f64 {
         match self.values {
-            Values::Known(values) => values[vertex],
-            Values::One => 1.0,
-            Values::AtRest(positions) => -positions[vertex].length(),
-            Values::Axis(positions, axis) => positions[vertex][axis],
+            Values::Known(values) => values.at(vertex, self.column),
+            Values::AtRest(positions) => match self.attribute {
+                Attribute::Doppler => 1.0,
+                Attribute::EmissionTime => -positions[vertex].length(),
+                Attribute::RestPosition => positions[vertex][self.column],
+            },
         }
     }
 }
@@ -131,71 +122,63 @@ impl<'a> Layer<'a> {
         asked_for: Attributes,
         numbers: Numbers,
     ) -> Result<Vec<Scalar<'a>>, WriteError> {
-        let positions = self.mesh.positions();
         let mut scalars = vec![];
-        let mut add = |name, words, values: Values<'a>| {
-            if let Some(found) = values.count().filter(|&found| found != positions.len()) {
-                return Err(WriteError::Attribute {
-                    name: self.name.to_owned(),
-                    attribute: name,
-                    found,
-                    vertices: positions.len(),
-                });
-            }
-            let scalar = Scalar { name, values };
-            match first_beyond_f32(positions.len(), |vertex| scalar.at(vertex)) {
-                Some(vertex) if numbers == Numbers::Any => {
-                    let is_none = |vertex: &usize| !scalar.at(*vertex).is_finite();
-                    match (vertex..positions.len()).find(is_none) {
-                        Some(vertex) => Err(WriteError::Overflow {
-                            name: self.name.to_owned(),
-                            vertex,
-                        }),
-                        None => {
-                            scalars.push(scalar);
-                            Ok(())
-                        }
-                    }
-                }
-                Some(vertex) => Err(WriteError::Range {
-                    name: self.name.to_owned(),
-                    quantity: words,
-                    vertex,
-                    value: scalar.at(vertex),
-                    limit: f64::from(f32::MAX),
-                }),
-                None => {
-                    scalars.push(scalar);
-                    Ok(())
-                }
-            }
-        };
-        let own = |of: fn(&VertexData) -> Option<&Vec<f64>>| {
-            let data = self.vertex_data?;
-            Some(Values::Known(of(data).map_or(&[], Vec::as_slice)))
-        };
-        if asked_for.doppler {
-            let factors = own(|data| data.doppler_factors.as_ref());
-            add(
-                "doppler",
-                "the Doppler factor",
-                factors.unwrap_or(Values::One),
-            )?;
-        }
-        if asked_for.emission_time {
-            let times = own(|data| data.emission_times.as_ref());
-            let times = times.unwrap_or(Values::AtRest(positions));
-            add("emission_time", "the emission time", times)?;
-        }
-        if asked_for.rest_position {
-            let places = match self.vertex_data {
-                Some(data) => data.rest_positions.as_deref().unwrap_or_default(),
-                None => positions,
-            };
-            for (axis, name) in ["rest_x", "rest_y", "rest_z"].into_iter().enumerate() {
-                add(name, "the place at rest", Values::Axis(places, axis))?;
+        for attribute in asked_for.iter() {
+            let values = self.values(attribute)?;
+            for (column, &name) in attribute.columns().iter().enumerate() {
+                let scalar = Scalar {
+                    name,
+                    attribute,
+                    column,
+                    values,
+                };
+                self.check(&scalar, numbers)?;
+                scalars.push(scalar);
             }
         }
         Ok(scalars)
+    }
+
+    /// The values of an attribute, one for each vertex.
+    fn values(&self, attribute: Attribute) -> Result<Values<'a>, WriteError> {
+        let positions = self.mesh.positions();
+        let Some(data) = self.vertex_data else {
+            return Ok(Values::AtRest(positions));
+        };
+        let columns = attribute.columns();
+        let values = data.values(attribute);
+        let found = values.map_or(0, |values| values.count(columns.len()));
+        match values.filter(|_| found == positions.len()) {
+            Some(values) => Ok(Values::Known(values)),
+            None => Err(WriteError::Attribute {
+                name: self.name.to_owned(),
+                attribute: columns[0],
+                found,
+                vertices: positions.len(),
+            }),
+        }
+    }
+
+    /// Whether a file can hold the numbers.
+    fn check(&self, scalar: &Scalar<'_>, numbers: Numbers) -> Result<(), WriteError> {
+        let vertices = self.mesh.positions().len();
+        let Some(vertex) = first_beyond_f32(vertices, |vertex| scalar.at(vertex)) else {
+            return Ok(());
+        };
+        let is_overflow = |vertex: &usize| !scalar.at(*vertex).is_finite();
+        match (numbers, (vertex..vertices).find(is_overflow)) {
+            (Numbers::Any, None) => Ok(()),
+            (Numbers::Any, Some(vertex)) => Err(WriteError::Overflow {
+                name: self.name.to_owned(),
+                vertex,
+            }),
+            (Numbers::Single, _) => Err(WriteError::Range {
+                name: self.name.to_owned(),
+                quantity: scalar.attribute.quantity(),
+                vertex,
+                value: scalar.at(vertex),
+                limit: f64::from(f32::MAX),
+            }),
+        }
     }
 }

@@ -14,6 +14,7 @@ mod size;
 mod text;
 
 pub use error::WriteError;
+pub(crate) use export::FRAMES_PER_SECOND;
 pub use export::{Export, Playback};
 pub use file::{Target, abandon_writes, destination, write_whole, write_whole_target};
 pub use format::Format;

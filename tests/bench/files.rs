@@ -14,6 +14,7 @@ use std::sync::Arc;
 use common::refining::{Sighting, frozen, model};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use photosurface::read::read_model;
+use photosurface::scene::{Attribute, Attributes};
 use photosurface::write::{Export, write_glb, write_ply};
 use photosurface::{
     DVec3, Mesh, Photosurface, PlacedScene, Shape, Source, SurfaceOptions, Tolerance, Velocity,
@@ -40,7 +41,7 @@ fn photosurfaces(mesh: Mesh) -> (PlacedScene, Vec<Photosurface>) {
         subdivide: false,
         ..SurfaceOptions::default()
     };
-    sighting.wanted.attributes.doppler = true;
+    sighting.wanted.attributes = Attributes::default().with(Attribute::Doppler);
     let placed = sighting.placed(Source::Model(Arc::new(model(&[mesh]))));
     let made = placed
         .photosurfaces(0, sighting.wanted)

@@ -7,11 +7,11 @@ use crate::common::command::{Workplace, glb_json};
 use crate::common::glb::Glb;
 use crate::common::refining::{Sighting, model, plate};
 use photosurface::light_cone::{PhotosurfaceMap, View};
-use photosurface::pipeline::PlacedSceneError;
+use photosurface::pipeline::{PlacedSceneError, VertexValues};
 use photosurface::render::{
     Camera, Picture, PictureOptions, PictureSize, Projection, Scenery, Strokes, Viewpoint,
 };
-use photosurface::scene::{Attributes, Rotation, even_steps};
+use photosurface::scene::{Attribute, Rotation, even_steps};
 use photosurface::shape::{Appearance, Color};
 use photosurface::spacetime::{Event, Lorentz, MAX_RAPIDITY, WorldLine};
 use photosurface::tessellate::Precision;
@@ -649,11 +649,9 @@ fn what_does_not_fit_together_is_not_written() {
     let (models, _) = load_models(&scene, "".as_ref()).unwrap();
     let placed = PlacedScene::new(scene, models).unwrap();
     let wanted = SurfaceOptions {
-        attributes: Attributes {
-            doppler: true,
-            rest_position: true,
-            ..Attributes::default()
-        },
+        attributes: [Attribute::Doppler, Attribute::RestPosition]
+            .into_iter()
+            .collect(),
         ..SurfaceOptions::default()
     };
     let facts = placed.facts();
@@ -674,9 +672,11 @@ fn what_does_not_fit_together_is_not_written() {
     let fine = fine.unwrap();
 
     let mut short = surface.clone();
-    short.vertex_data.rest_positions.as_mut().unwrap().pop();
+    let places = short.vertex_data.rest_positions().unwrap();
+    let fewer = VertexValues::Vectors(places[1..].to_vec());
+    short.vertex_data.set(Attribute::RestPosition, Some(fewer));
     let mut without = surface.clone();
-    without.vertex_data.doppler_factors = None;
+    without.vertex_data.set(Attribute::Doppler, None);
     for (others, attribute) in [
         (vec![short], "rest_x"),
         (vec![surface.clone(), without], "doppler"),

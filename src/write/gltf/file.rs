@@ -7,7 +7,6 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::io::Write;
-use std::ops::RangeInclusive;
 
 use glam::{DVec3, DVec4, Vec2};
 use gltf::json::validation::Checked;
@@ -22,10 +21,7 @@ use crate::pipeline::{Photosurface, PlacedSceneError, SceneFacts, step_label};
 use crate::scene::Attributes;
 use crate::write::layer::{Layer, Numbers, Scalar};
 use crate::write::pack::{Bounds, Packing};
-use crate::write::{Export, GltfOutput, Playback, WriteError};
-
-/// Steps in a second that key frames in `f32` can tell apart, also after a hundred thousand of them.
-const FRAMES_PER_SECOND: RangeInclusive<f64> = 1e-3..=1e3;
+use crate::write::{Export, FRAMES_PER_SECOND, GltfOutput, Playback, WriteError};
 
 /// Writes one GLB.
 ///

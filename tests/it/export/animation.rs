@@ -6,7 +6,7 @@ use crate::common::Random;
 use crate::common::command::{Workplace, glb_json};
 use crate::common::glb::Glb;
 use photosurface::light_cone::View;
-use photosurface::scene::Attributes;
+use photosurface::scene::{Attribute, Attributes};
 use photosurface::{DVec3, Photosurface, PlacedScene, Scene, SurfaceOptions, load_models};
 use serde_json::Value;
 
@@ -30,10 +30,7 @@ fn placed() -> PlacedScene {
 /// The places at rest are those of the first step, wherever they are asked for.
 fn morphing(placed: &PlacedScene) -> Vec<Vec<Photosurface>> {
     let wanted = SurfaceOptions {
-        attributes: Attributes {
-            rest_position: true,
-            ..Attributes::default()
-        },
+        attributes: Attributes::default().with(Attribute::RestPosition),
         ..SurfaceOptions::default()
     };
     placed.morphing(wanted).collect()
@@ -59,11 +56,7 @@ fn one_mesh_is_within_the_tolerance_at_every_step() {
             );
             assert_eq!(surface.mesh.triangles(), steps[0].mesh.triangles());
             let view = View::new(&placed.scene().moment(step).unwrap(), &object.world_line());
-            let rest = surface
-                .vertex_data
-                .rest_positions
-                .as_ref()
-                .expect("asked for");
+            let rest = surface.vertex_data.rest_positions().expect("asked for");
             let gap_and_rounding = certificate.gap + certificate.rounding;
             for corners in surface.mesh.triangles() {
                 let weights = [0; 3].map(|_| random.between(0.0, 1.0));

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use photosurface::light_cone::View;
 use photosurface::render::{Camera, PictureOptions, PictureSize, Projection, Scenery, Viewpoint};
-use photosurface::scene::{Attributes, MarkerRadius, Place, Rotation, Scale, Time, Unit};
+use photosurface::scene::{Attribute, MarkerRadius, Place, Rotation, Scale, Time, Unit};
 use photosurface::shape::Appearance;
 use photosurface::spacetime::VelocityError;
 use photosurface::tessellate::Precision;
@@ -377,7 +377,7 @@ fn assert_as_certified(
     assert!(!certificate.complete || fits, "{}", case());
     tally.complete += usize::from(certificate.complete);
 
-    let rest = surface.vertex_data.rest_positions.as_deref();
+    let rest = surface.vertex_data.rest_positions();
     let rest = rest.expect("rest positions were asked for");
     let (seen, triangles) = (surface.mesh.positions(), surface.mesh.triangles());
     assert_eq!(rest.len(), seen.len(), "{}", case());
@@ -496,11 +496,13 @@ fn examine(numbers: &Numbers, all: bool, tally: &mut Tally) {
     tally.made += 1;
     let wanted = SurfaceOptions {
         precision: Precision::Double,
-        attributes: Attributes {
-            rest_position: true,
-            doppler: true,
-            emission_time: true,
-        },
+        attributes: [
+            Attribute::Doppler,
+            Attribute::EmissionTime,
+            Attribute::RestPosition,
+        ]
+        .into_iter()
+        .collect(),
         ..SurfaceOptions::default()
     };
     let (placed, loosening) = placed.within_budget(wanted, MAX_TRIANGLES);

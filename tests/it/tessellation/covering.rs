@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use crate::common::Random;
 use crate::common::refining::{Welded, mesh, model};
-use photosurface::scene::{Attributes, BUILT_IN_SCENES, Place};
+use photosurface::scene::{Attribute, Attributes, BUILT_IN_SCENES, Place};
 use photosurface::tessellate::Precision;
 use photosurface::{
     DVec3, Mesh, Object, Observer, Photosurface, PlacedScene, Scene, Source, SurfaceOptions,
@@ -22,10 +22,7 @@ const MAX_TRIANGLES: u64 = 20_000;
 
 fn wanted() -> SurfaceOptions {
     SurfaceOptions {
-        attributes: Attributes {
-            rest_position: true,
-            ..Attributes::default()
-        },
+        attributes: Attributes::default().with(Attribute::RestPosition),
         precision: Precision::Double,
         ..SurfaceOptions::default()
     }
@@ -37,7 +34,7 @@ fn placed(scene: Scene) -> PlacedScene {
 }
 
 fn rest_positions(surface: &Photosurface) -> &[DVec3] {
-    surface.vertex_data.rest_positions.as_ref().unwrap()
+    surface.vertex_data.rest_positions().unwrap()
 }
 
 /// The sum of areas, and the length of all edges that one triangle has and none goes back along.

@@ -113,7 +113,7 @@ fn check_cover(placed: &PlacedScene, made: &Photosurface) {
     });
     let mut parts = parts.flat_map(|(_, parts)| parts);
     let part = parts.find(|(_, part)| part.name == facts.part);
-    let Some(((_, part), places)) = part.zip(made.vertex_data.rest_positions.as_ref()) else {
+    let Some(((_, part), places)) = part.zip(made.vertex_data.rest_positions()) else {
         return;
     };
     let before = areas(part.mesh().positions(), part.mesh().triangles());

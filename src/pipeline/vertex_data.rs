@@ -1,0 +1,105 @@
+//! Attributes of the vertices of a photosurface.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::mapped_mesh::VERTICES_PER_JOB;
+use crate::light_cone::View;
+use crate::mesh::Mesh;
+use crate::scene::{Attribute, Attributes};
+
+/// The attributes that were asked for, with a value at every vertex.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct VertexData(BTreeMap<Attribute, VertexValues>);
+
+/// The values of one attribute, one for each vertex.
+#[derive(Clone, Debug, PartialEq)]
+pub enum VertexValues {
+    /// Numbers.
+    Numbers(Vec<f64>),
+    /// Vectors.
+    Vectors(Vec<DVec3>),
+}
+
+impl VertexData {
+    /// The attributes of the vertices of a mesh at rest.
+    pub(super) fn new(view: &View, rest: &Mesh, wanted: Attributes) -> Self {
+        let numbers = |value: &(dyn Fn(DVec3) -> f64 + Sync)| {
+            let jobs = rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
+            VertexValues::Numbers(jobs.map(|&position| value(position)).collect())
+        };
+        let values = |attribute| match attribute {
+            Attribute::Doppler => numbers(&|position| view.doppler_factor(position)),
+            Attribute::EmissionTime => numbers(&|position| view.emission_time(position)),
+            Attribute::RestPosition => VertexValues::Vectors(rest.positions().to_vec()),
+        };
+        let columns = wanted
+            .iter()
+            .map(|attribute| (attribute, values(attribute)));
+        Self(columns.collect())
+    }
+
+    /// The attributes that there are.
+    pub fn attributes(&self) -> Attributes {
+        self.0.keys().copied().collect()
+    }
+
+    /// The values of an attribute; `None` where it was not asked for.
+    pub fn values(&self, attribute: Attribute) -> Option<&VertexValues> {
+        self.0.get(&attribute)
+    }
+
+    /// Frequency seen over frequency emitted at each vertex.
+    pub fn doppler_factors(&self) -> Option<&[f64]> {
+        self.numbers(Attribute::Doppler)
+    }
+
+    /// The time at each vertex at which the light left that is seen now: in the observer's frame, counted from now.
+    pub fn emission_times(&self) -> Option<&[f64]> {
+        self.numbers(Attribute::EmissionTime)
+    }
+
+    /// The place of each vertex in the object's rest frame, the object's origin at its origin.
+    pub fn rest_positions(&self) -> Option<&[DVec3]> {
+        match self.values(Attribute::RestPosition)? {
+            VertexValues::Vectors(vectors) => Some(vectors),
+            VertexValues::Numbers(_) => None,
+        }
+    }
+
+    /// Sets the values of an attribute, or takes it away.
+    pub fn set(&mut self, attribute: Attribute, values: Option<VertexValues>) {
+        match values {
+            Some(values) => self.0.insert(attribute, values),
+            None => self.0.remove(&attribute),
+        };
+    }
+
+    fn numbers(&self, attribute: Attribute) -> Option<&[f64]> {
+        match self.values(attribute)? {
+            VertexValues::Numbers(numbers) => Some(numbers),
+            VertexValues::Vectors(_) => None,
+        }
+    }
+}
+
+impl VertexValues {
+    /// How many vertices have a value of so many numbers; none where values have another number of them.
+    pub(crate) fn count(&self, columns: usize) -> usize {
+        match (self, columns) {
+            (Self::Numbers(numbers), 1) => numbers.len(),
+            (Self::Vectors(vectors), 3) => vectors.len(),
+            _ => 0,
+        }
+    }
+
+    /// One number of the value at a vertex.
+    pub(crate) fn at(&self, vertex: usize, column: usize) -> f64 {
+        match self {
+            Self::Numbers(numbers) => numbers[vertex],
+            Self::Vectors(vectors) => vectors[vertex][column],
+        }
+    }
+}
