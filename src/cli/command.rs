@@ -12,7 +12,10 @@ use super::status::{INTERRUPTED, Status, ended};
 use super::{args, check, cost, example, export, messages, render, schema};
 
 /// More threads than any machine has cores are refused.
-const MAX_THREADS: NonZeroUsize = NonZeroUsize::MIN.saturating_add(1023);
+const MAX_THREADS: usize = 1024;
+
+/// The variable of the environment that says how many threads there are.
+const OF_ENVIRONMENT: &str = "RAYON_NUM_THREADS";
 
 /// The apparent shape of fast-moving objects as real geometry.
 ///
@@ -57,7 +60,7 @@ pub(crate) fn run() -> ExitCode {
         photosurface::write::abandon_writes();
         std::process::exit(INTERRUPTED.into());
     });
-    let threads = cli.threads.map_or(Ok(()), compute_with);
+    let threads = compute_with(cli.threads);
     ended(threads.and_then(|()| cli.command.run()))
 }
 
@@ -74,14 +77,23 @@ impl Command {
     }
 }
 
-/// Has all work of this process done by so many threads.
-fn compute_with(threads: NonZeroUsize) -> anyhow::Result<()> {
+/// Has all work of this process done by so many threads; without a number, by as many as the environment says.
+fn compute_with(threads: Option<NonZeroUsize>) -> anyhow::Result<()> {
+    let (name, threads) = match threads {
+        Some(threads) => ("--threads", threads.get()),
+        None => {
+            let named = std::env::var(OF_ENVIRONMENT).ok();
+            // As rayon has it, 0 and words that are no number are the same as nothing.
+            let named = named.and_then(|threads| threads.parse().ok());
+            (OF_ENVIRONMENT, named.unwrap_or(0))
+        }
+    };
     ensure!(
         threads <= MAX_THREADS,
-        "--threads is {threads}, expected at most {MAX_THREADS}"
+        "{name} is {threads}, expected at most {MAX_THREADS}"
     );
-    let pool = ThreadPoolBuilder::new().num_threads(threads.get());
-    pool.build_global().context("--threads")
+    let pool = ThreadPoolBuilder::new().num_threads(threads);
+    pool.build_global().context(name)
 }
 
 /// Prints what was asked for in place of a command.

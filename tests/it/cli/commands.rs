@@ -515,6 +515,10 @@ fn every_command_computes_with_as_many_threads_as_it_is_told() {
         assert_eq!(run.status, 2, "{run}");
         assert!(run.stderr.contains(said), "{run}");
     }
+    let run = workplace.run_with("check ball.json", b"", &[("RAYON_NUM_THREADS", "65535")]);
+    assert_eq!(run.status, 2, "{run}");
+    let said = "RAYON_NUM_THREADS is 65535, expected at most 1024";
+    assert!(run.stderr.contains(said), "{run}");
 }
 
 /// In a large file the data is behind room for the JSON; through a pipe it comes when the JSON is known.
