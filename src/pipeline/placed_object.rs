@@ -118,8 +118,8 @@ impl Shaped {
     }
 
     /// The shape with the coarsest facets whose distance from the curved surface is at most `deviation`, in the rest
-    /// frame. If these are more than `most` triangles, the finest facets that are not; the coarsest form if even that
-    /// has more.
+    /// frame. If that shape has more than `most` triangles, the result has the finest facets with at most `most`
+    /// triangles, or the coarsest facets if even these are more.
     pub(super) fn within(&self, deviation: f64, most: u64) -> Shape {
         let mut shape = self.shape.within(deviation / self.largest_scale);
         let coarsest = self.shape.within(f64::INFINITY);

@@ -165,7 +165,7 @@ mod tests {
                 along.bound >= gap * (1.0 - 1e-10),
                 "{corners:?}: {along:?} {gap}"
             );
-            // Of a smaller gap the rounding error is more than a millionth.
+            // For a smaller gap the rounding error is more than a millionth of it.
             all += usize::from(gap > 1e-8 * corners[0].length());
             if along.is_sharp {
                 sharp += 1;

@@ -1,5 +1,5 @@
-//! Refinement of meshes at rest, so that their photosurfaces are within a tolerance of the true ones, with few more
-//! triangles than that needs.
+//! Refinement of meshes at rest, so that their photosurfaces are within a tolerance of the true ones, with hardly more
+//! triangles than theory requires.
 //!
 //! The program maps the corners of a flat triangle and joins them by a flat output triangle. In the observer's frame
 //! the output triangle lies beside the true photosurface by `gamma beta e` along the motion, with the rest-frame gap

@@ -55,7 +55,7 @@ impl Room {
         short.into_iter().zip(most).collect()
     }
 
-    /// Whether the turn that is being taken is the last one.
+    /// Whether the current turn is the last one.
     pub(super) fn is_last_turn(&self) -> bool {
         self.turns == TURNS
     }
