@@ -54,7 +54,7 @@ pub enum OutputError {
     Output {
         /// The file to be written.
         output: PathBuf,
-        /// The other name of it.
+        /// The other name of the same file.
         other: PathBuf,
     },
     /// The file cannot be written.

@@ -261,8 +261,8 @@ fn fitting_fov_deg(places: &[DVec3], size: PictureSize) -> f64 {
 /// The point that a camera has to look at to frame the positions `places`, or `target` if that is given, and the
 /// smallest distance from that point at which the camera frames them.
 ///
-/// `axes` point right, up and from the target to the camera; `half` is the tangent of half the vertical field of view, and
-/// `aspect` the width of the picture in heights.
+/// `axes` point right, up and from the target to the camera; `half` is the tangent of half the vertical field of view,
+/// and `aspect` the picture's width divided by its height.
 fn frame(
     places: &[DVec3],
     target: Option<DVec3>,
@@ -310,7 +310,7 @@ mod tests {
         PictureSize::new(width, height).unwrap()
     }
 
-    /// Sizes and distances from nothing to the largest numbers, and no places at all.
+    /// Lists of positions with sizes and distances from zero to the largest numbers, and an empty list.
     fn frames() -> Vec<Vec<DVec3>> {
         let sizes = [
             0.0, 1e-300, 1e-155, 1e-30, 1e-9, 1.0, 1e30, 1e152, 1e156, 1e290, 1e308,

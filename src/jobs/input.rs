@@ -93,7 +93,7 @@ impl PlacedScene {
 }
 
 impl Access {
-    /// As [`PlacedScene::load`].
+    /// The same as [`PlacedScene::load`], with this access.
     ///
     /// # Errors
     ///

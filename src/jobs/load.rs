@@ -35,7 +35,7 @@ pub enum LoadError {
     },
 }
 
-/// The name of the file, unless its error says it already.
+/// The name of the file for an error message, unless the error already contains it.
 fn in_file(path: &Path, source: &ReadError) -> String {
     match source.file() {
         Some(named) if named == path => String::new(),

@@ -59,7 +59,7 @@ pub enum PictureMethod {
     Mesh,
 }
 
-/// Everything that the pictures of a scene depend on beside the scene.
+/// All settings on which the pictures of a scene depend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureSettings {
     /// Which pictures are drawn, and from where.
@@ -78,8 +78,9 @@ pub struct PictureSettings {
 }
 
 impl PictureSettings {
-    /// The settings that the command `photosurface render` starts from: 1280 by 720 pixels, on a sheet 320 by 240 for each
-    /// view, nine rays per pixel; 60 degrees for the observer, and cameras that have everything in the picture otherwise.
+    /// The default settings of the command `photosurface render`: 1280 by 720 pixels, or 320 by 240 for each view of a
+    /// sheet, and nine rays per pixel. In pictures of the observer's view alone the vertical field of view is 60
+    /// degrees; on a sheet and outside, the cameras have everything in the picture.
     pub fn new(view: PictureView) -> Self {
         let [width, height] = match view {
             PictureView::Sheet { .. } => [320, 240],

@@ -54,7 +54,7 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// Vertical field of view of the observer at all steps, in degrees.
+    /// Vertical field of view of the observer's camera, in degrees, the same at all steps.
     pub(super) fn observer_fov_deg(&self) -> Result<f64, RenderError> {
         let places = self.steps().map(|step| self.seen_vertices(step));
         self.settings.camera.observer_fov_deg(places)

@@ -133,7 +133,7 @@ impl Work<'_> {
         }
     }
 
-    /// Writes some steps to a stream: a `.ply`, else a GLB.
+    /// Writes some steps to a stream, as a PLY if that is the format, otherwise as a GLB.
     pub(super) fn write_stream(
         &mut self,
         out: &mut dyn Write,

@@ -19,7 +19,8 @@ use super::safe_range::{SafeRangeMap, is_in_safe_range, size};
 use crate::spacetime::exact::Split;
 use crate::spacetime::{Velocity, exact, harmless_scale, heading, length, unit};
 
-/// The map from points at rest to the places where one moving observer sees them.
+/// The map from points in the rest frame to the positions, in the observer's frame, where one moving observer sees
+/// them.
 ///
 /// The map is homogeneous of degree 1, one-to-one, linear along every ray from the observer, and smooth except at the
 /// observer. An offset that is not finite gives results that are not finite, and never a panic.
@@ -98,7 +99,7 @@ impl LightCone {
 }
 
 impl PhotosurfaceMap {
-    /// The map for an observer who moves with velocity `observer` through the rest frame.
+    /// The map for an observer who moves with the velocity `observer` in the rest frame.
     pub fn new(observer: &Velocity) -> Self {
         Self {
             direction: observer.direction(),

@@ -62,7 +62,7 @@ impl View {
         }
     }
 
-    /// The observer's velocity in the rest frame.
+    /// The observer's velocity in the object's rest frame.
     pub fn relative_velocity(&self) -> Velocity {
         self.rest_to_observer.boost_velocity()
     }
@@ -207,7 +207,7 @@ mod tests {
                 let scene = object.origin + to_scene.apply(Event::new(time, place));
                 to_observer.apply(scene - observer.at(0.75))
             };
-            // The observer's time is linear in the time at rest.
+            // The time in the observer's frame is a linear function of the time in the rest frame.
             let (start, slope) = (seen(0.0).time, seen(1.0).time - seen(0.0).time);
             let event = seen(-start / slope);
             let found = now.transform_point3(place);

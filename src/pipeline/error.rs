@@ -4,16 +4,16 @@ use thiserror::Error;
 
 use crate::spacetime::MAX_RAPIDITY;
 
-/// Why a scene and models make no placed scene, or a placed scene no photosurfaces.
+/// Reasons why a scene and its models make no placed scene, or why a placed scene has no photosurfaces.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PlacedSceneError {
     /// The number of models is not the number of objects.
     #[error("there are {models} models for {objects} objects, expected one for each")]
     Models {
-        /// How many objects the scene has.
+        /// Number of objects of the scene.
         objects: usize,
-        /// How many models there are.
+        /// Number of models.
         models: usize,
     },
     /// A mesh has a vertex whose position is not finite in the object's rest frame.
@@ -35,17 +35,17 @@ pub enum PlacedSceneError {
     /// A velocity that is composed of others has a rapidity above [`MAX_RAPIDITY`].
     #[error("the rapidity of {who} is {rapidity}, expected at most {MAX_RAPIDITY}")]
     TooFast {
-        /// The observer, or the object in the scene.
+        /// The observer, or the name of the object.
         who: String,
         /// The rapidity of its velocity.
         rapidity: f64,
     },
-    /// A step that the scene does not have.
+    /// The scene has no such step.
     #[error("step {step} of a scene with {steps} steps, expected less than {steps}")]
     Step {
         /// The step, counted from 0.
         step: usize,
-        /// How many there are.
+        /// Number of steps of the scene.
         steps: usize,
     },
 }

@@ -23,7 +23,7 @@ const MARKER_RESOLUTION: u32 = 24;
 
 const A_STEP: &str = "whoever asks for a plan asks for a step of the scene";
 
-/// A scene with the geometry of its objects, placed in their rest frames: all that photosurfaces need.
+/// A scene with the geometry of its objects, placed in their rest frames. Photosurfaces are made from it.
 ///
 /// # Example
 ///
@@ -116,7 +116,7 @@ impl PlacedScene {
         })
     }
 
-    /// The same placed scene with one tolerance for all objects, and no aims that a budget has loosened.
+    /// The same placed scene with one tolerance for all objects; aims that a budget has loosened are reset.
     #[must_use]
     pub fn with_tolerance_for_all(mut self, tolerance: Tolerance) -> Self {
         self.scene = self.scene.with_tolerance_for_all(tolerance);
@@ -177,7 +177,7 @@ impl PlacedScene {
     ///
     /// # Errors
     ///
-    /// The scene has no such step.
+    /// An error is returned if the scene has no such step.
     pub fn photosurfaces(
         &self,
         step: usize,

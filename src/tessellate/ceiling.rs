@@ -65,7 +65,7 @@ pub(crate) fn ceilings([a, b, c]: [DVec3; 3]) -> Ceilings {
     let twice_volume = a.dot(ab.cross(ac)).abs();
     // The rounding error of the volume is relative to its terms.
     let rounded = 64.0 * f64::EPSILON * distance_squared.sqrt() * longest;
-    // Written so that NaN is refused.
+    // Written so that NaN gives `UNKNOWN`.
     let known = PLAIN.contains(&distance_squared) && 4.0 * longest <= distance_squared;
     if known {
         Ceilings {

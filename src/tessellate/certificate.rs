@@ -1,4 +1,4 @@
-//! The certificate: a proof of how far a mesh is from the true photosurface.
+//! The certificate: a proven bound on the distance between a mesh and the true photosurface.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -41,7 +41,7 @@ pub struct Certificate {
     pub triangles_out: usize,
     /// The fewest triangles, each inside a triangle at rest, with which the gap can be within the tolerance by theory.
     pub minimum_triangles: f64,
-    /// `triangles_out / minimum_triangles`
+    /// The ratio `triangles_out / minimum_triangles`.
     pub ratio: f64,
 }
 

@@ -25,7 +25,7 @@ pub(super) struct Plane {
     pub(super) away: DVec3,
     /// Distance of the plane from the observer.
     pub(super) height: f64,
-    /// Distance of the triangle from the observer.
+    /// Distance of the nearest point of the triangle from the observer.
     pub(super) nearest: f64,
     corners: [DVec2; 3],
     /// Twice the area of the triangle.

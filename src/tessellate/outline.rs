@@ -149,7 +149,7 @@ pub(super) struct Divided {
     pub(super) need: Need,
 }
 
-/// What a triangle needs.
+/// The needs of one triangle of the survey's list `above`.
 #[derive(Clone, Copy)]
 pub(super) struct Need {
     /// Whether the triangle has to be divided at all.
