@@ -15,7 +15,7 @@ pub(crate) struct Extremes {
     pub(crate) farthest: f64,
     /// The largest distance of a point from the origin of the rest frame.
     pub(crate) farthest_rest: f64,
-    /// The largest [`View::forwardness`] of a point.
+    /// The largest [`View::forwardness`](super::View::forwardness) of a point.
     pub(crate) forwardness: f64,
 }
 
