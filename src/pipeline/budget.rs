@@ -88,10 +88,10 @@ impl PlacedScene {
     /// triangles; and for each object the factor by which its tolerance has to be loosened to fit without the budget.
     /// The factor is 1 if the aim is not loosened, and infinite if no aim that was tried is loose enough.
     ///
-    /// Objects that need less than an equal share of the budget get as many triangles as they need; the other objects
-    /// share the rest, and each of them closes its largest gaps first. Certificates still compare with the tolerances
-    /// of the scene. The triangles of a source are always kept, even if they exceed the budget: those of its meshes, or
-    /// those of the coarsest form of a round shape.
+    /// An object that needs less than an equal share of what the other objects leave of the budget gets as many
+    /// triangles as it needs. The other objects share the rest, and each of them closes its largest gaps first.
+    /// Certificates still compare with the tolerances of the scene. The triangles of a source are always kept, even if
+    /// they exceed the budget: those of its meshes, or those of the coarsest form of a round shape.
     ///
     /// The limit holds exactly, even where a prediction is wrong: grants are fixed beforehand, and refinement stops
     /// when a grant is used up. For [`PlacedScene::morphing`] the limit counts the triangles of each part once, because

@@ -60,8 +60,8 @@ pub(crate) fn minimum_triangles(offsets: [DVec3; 3], allowance: &Allowance) -> f
     // the halving endless.
     let exponent = exponent(DVec3::splat(largest));
     let [a, b, c] = offsets.map(|offset| scaled(offset, -exponent));
-    // h times twice the area is the triple product, 6 volumes of the tetrahedron, so each piece of the triangle has its
-    // share by area.
+    // h times twice the area is the triple product of the corners, 6 times the volume of the tetrahedron with the
+    // observer. It is divided among pieces of the triangle in proportion to their areas.
     let twice_area = (b - a).cross(c - a);
     let height_times_twice_area = a.dot(twice_area).abs();
     if height_times_twice_area == 0.0 {

@@ -12,7 +12,7 @@ const MAX_PREDICTED: f64 = 1e15;
 /// A number of points that triangles share. The first turn gives shares in proportion to the predictions. The points
 /// that some triangles leave then go to the triangles that were short of points, which are divided anew.
 ///
-/// The shares depend only on the numbers of points used in the turn before.
+/// The shares depend only on the predictions and on the numbers of points used in the turn before.
 pub(super) struct Room {
     weights: Vec<f64>,
     /// Points left for the triangles that get another turn.
