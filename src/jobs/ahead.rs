@@ -1,4 +1,4 @@
-//! Steps that are made while those before them are written.
+//! Makes the photosurfaces of later steps while those of earlier steps are written.
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -7,20 +7,20 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use crate::pipeline::{Photosurface, PlacedScene, PlacedSceneError, SurfaceOptions};
 use crate::write::WriteError;
 
-/// Triangles of steps that are made ahead, about, where that is more than one step: enough to keep cores busy, and a
-/// few megabytes, so that many steps take hardly more memory than two.
+/// About how many triangles are made ahead if that is more than one step: enough to keep all cores busy, and only a few
+/// megabytes, so that many steps need hardly more memory than two.
 const MADE_AHEAD: usize = 100_000;
 
-/// Steps of more triangles are made one after the other: what is written of them is little against what they take to
-/// make, in which all cores take part, and in memory.
+/// Steps with more triangles than this are made and written one after the other: making them uses all cores and takes
+/// much longer than writing, and two of them would need much memory.
 const MAX_TO_HAVE_TWO: usize = 500_000;
 
-/// Makes the photosurfaces of some steps and hands them to `put` in their order. While those of one step are put away
-/// the next are made: one step, or as many as there are cores where they are small.
+/// Makes the photosurfaces of some steps and hands them to `put` in the order of the steps. While `put` handles one
+/// step, the next steps are made: one, or as many as there are cores if the steps are small.
 ///
 /// # Errors
 ///
-/// Those of `put`; nothing is handed to it after the first.
+/// The first error of `put`, after which nothing is handed to it, or an error of the pipeline.
 pub(super) fn in_order(
     placed: &PlacedScene,
     wanted: SurfaceOptions,
@@ -29,7 +29,7 @@ pub(super) fn in_order(
 ) -> Result<(), WriteError> {
     let parts = placed.objects().flat_map(|(_, parts)| parts);
     let at_rest = parts.map(|(_, part)| part.mesh().triangles().len()).sum();
-    // Until one step is made nobody knows what it comes to.
+    // The number of triangles of a step is unknown until the first step is made.
     let (mut largest, mut ahead) = (at_rest, steps_ahead(at_rest).min(1));
     let mut begun: VecDeque<Receiver<Result<Vec<Photosurface>, PlacedSceneError>>> =
         VecDeque::new();
@@ -41,7 +41,7 @@ pub(super) fn in_order(
             while begun.len() < ahead && next < steps.end {
                 let (made, receiver) = sync_channel(1);
                 scope.spawn(move |_| {
-                    // Nobody takes it when writing has failed.
+                    // The receiver is gone if writing has failed.
                     let photosurfaces = placed.photosurfaces(next, wanted);
                     let _ = made.send(photosurfaces.map(Iterator::collect));
                 });
@@ -54,7 +54,7 @@ pub(super) fn in_order(
                 put(photosurface)
             };
             match begun_before {
-                // Without a sender it has panicked, and so will this scope.
+                // A missing sender means that its task has panicked; this scope will panic too.
                 Some(made) => {
                     for made in made {
                         made?.into_iter().try_for_each(&mut put)?;
@@ -69,7 +69,7 @@ pub(super) fn in_order(
     })
 }
 
-/// How many steps are made ahead where each has so many triangles.
+/// How many steps are made ahead if each has this number of triangles.
 fn steps_ahead(triangles: usize) -> usize {
     if triangles > MAX_TO_HAVE_TWO {
         return 0;

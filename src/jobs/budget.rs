@@ -1,22 +1,23 @@
-//! What tolerances need, and what a budget of triangles leaves of them.
+//! How many triangles the tolerances need, and how a budget of triangles loosens them.
 
 use crate::pipeline::{PlacedScene, Prediction, SurfaceOptions};
 use crate::scene::Tolerance;
 
-/// How many triangles photosurfaces have together at most where nothing else is asked for.
+/// Default limit on the triangles of all photosurfaces together.
 pub const DEFAULT_MAX_TRIANGLES: u64 = 20_000_000;
 
-/// A placed scene whose aims are within a budget of triangles, and what was predicted of it.
+/// A placed scene whose aims fit a budget of triangles, with the predictions. The *aim* of an object is the tolerance
+/// to which it is refined: its own tolerance, or a looser one.
 #[derive(Clone, Debug)]
 pub struct Fitted {
     /// The scene with the aims that fit.
     pub placed: PlacedScene,
-    /// What the tolerances of the scene need, for each object.
+    /// For each object the prediction for its own tolerance.
     pub needed: Vec<Prediction>,
-    /// What the aims that fit will take, for each object; not reachable where its aim is looser than its tolerance.
+    /// For each object the prediction for its aim; not reachable if the aim is looser than the tolerance.
     pub predictions: Vec<Prediction>,
-    /// For each object how many times looser than its own a tolerance is that fits by itself: 1 where the object needs no
-    /// looser one, infinite where none that was tried fits.
+    /// For each object the factor by which its tolerance has to be loosened to fit without the budget: 1 if the
+    /// tolerance fits as it is, infinite if no factor that was tried is large enough.
     pub loosening: Vec<f64>,
 }
 
@@ -45,7 +46,7 @@ impl Fitted {
         }
     }
 
-    /// Each object whose aim is looser than its tolerance, with a tolerance that fits by itself.
+    /// Each object whose aim is looser than its tolerance, with a tolerance that fits without the budget.
     pub fn loosened(&self) -> impl Iterator<Item = (&str, Tolerance)> {
         let scene = self.placed.scene();
         let objects = scene.objects().iter().zip(&self.loosening);

@@ -1,10 +1,11 @@
-//! How long the stages of a job take.
+//! Times that the stages of a job take.
 
 use std::time::Instant;
 
 use crate::write::StageTime;
 
-/// Wall-clock time of each stage; times of one name add up. What goes on in the background meanwhile does not count.
+/// Wall-clock time of each stage, in seconds; times of stages with the same name add up. Work in the background does
+/// not count.
 #[derive(Clone, Debug)]
 pub(super) struct Clock {
     last: Instant,
@@ -12,7 +13,7 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// A clock that begins now, after these stages.
+    /// A clock that starts now; `stages` have already finished.
     pub(super) fn after(stages: &[StageTime]) -> Self {
         Self {
             last: Instant::now(),
@@ -20,7 +21,7 @@ impl Clock {
         }
     }
 
-    /// The stage `name` went on since the last call, or since the beginning.
+    /// Adds the time since the last call, or since the start, to the stage `name`.
     pub(super) fn stop(&mut self, name: &'static str) {
         let now = Instant::now();
         let seconds = (now - self.last).as_secs_f64();
@@ -31,7 +32,7 @@ impl Clock {
         }
     }
 
-    /// The same clock after a pause that does not count.
+    /// The same clock, restarted after a pause that does not count.
     pub(super) fn resumed(&self) -> Self {
         Self::after(&self.stages)
     }

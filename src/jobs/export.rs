@@ -1,4 +1,4 @@
-//! The export: photosurfaces of a placed scene as files, in any format, for one tolerance or several.
+//! The export writes the photosurfaces of a placed scene to files, in any format, for one or several tolerances.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -11,29 +11,30 @@ use crate::pipeline::{PlacedScene, SurfaceOptions};
 use crate::scene::Tolerance;
 use crate::write::{Format, Report, WriteError, replaced_data, write_whole};
 
-/// What an export has written at one level of detail.
+/// The result of an export at one level of detail.
 #[derive(Clone, Debug)]
 pub struct Exported {
-    /// The files of photosurfaces: one, or one for each step.
+    /// The files with photosurfaces: one for all steps, or one for each step.
     pub files: Vec<PathBuf>,
-    /// The files of data that belong to those, where they are `.gltf`.
+    /// The data files of `.gltf` files.
     pub data_files: Vec<PathBuf>,
-    /// What was made, in sum.
+    /// Totals of the photosurfaces in the files.
     pub tally: Tally,
-    /// What was made, one by one if [`ExportSettings::keep_facts`] says so or there is a report, and how long each stage took.
+    /// The time that each stage took, and the facts about every photosurface if [`ExportSettings::keep_facts`] is set
+    /// or a report is written.
     pub report: Report,
 }
 
-/// Writes photosurfaces of a placed scene to `path`, in the format that its extension says (.glb, .gltf or .ply), with
-/// the attributes that the scene asks for; says what each level of detail came to.
+/// Writes the photosurfaces of a placed scene to `path`, in the format of its extension (.glb, .gltf or .ply), with the
+/// attributes that the scene asks for. Returns the result for each level of detail.
 ///
-/// Memory does not grow with the number of steps, but for a `.ply`. Each file appears whole or not at all, and what
-/// stood there stays until then.
+/// The memory needed does not grow with the number of steps, except for a `.ply`. Each file appears whole or not at
+/// all; until then an older file with the same name stays.
 ///
 /// # Errors
 ///
-/// Settings that do not go together or with the format; a file that cannot be written, or cannot hold what is seen,
-/// which is found out before any of the work where that is possible; the end by `progress`.
+/// An error is returned if settings contradict each other or the format, if a file cannot be written or cannot hold the
+/// photosurfaces (found before any work if possible), or if `progress` cancels the export.
 pub fn export(
     placed: &PlacedScene,
     settings: &ExportSettings,
@@ -63,29 +64,29 @@ pub fn export(
 ///
 /// # Errors
 ///
-/// The file cannot be written.
+/// An error is returned if the file cannot be written.
 pub fn write_report(path: &Path, report: &Report) -> Result<(), WriteError> {
     let text = report.to_json() + "\n";
     write_whole(path, |writer| Ok(writer.write_all(text.as_bytes())?))
 }
 
-/// One level of detail of an export, before its work.
+/// One level of detail of an export, before anything is made.
 #[derive(Clone, Debug)]
 pub struct ExportLevel {
     placed: PlacedScene,
     settings: ExportSettings,
     format: Format,
-    /// One for each step, or one for all.
+    /// One file for each step, or one for all steps.
     files: Vec<PathBuf>,
     report: Option<PathBuf>,
 }
 
-/// The levels of detail of an export in a given format: [`export`] step by step, for callers that have something to say
-/// or to decide between.
+/// The levels of detail of an export in a given format. This function splits [`export`] into stages, for callers that
+/// show messages or decide something between them.
 ///
 /// # Errors
 ///
-/// Settings that do not go together or with the format.
+/// An error is returned if settings contradict each other or the format.
 pub fn export_levels(
     placed: &PlacedScene,
     settings: &ExportSettings,
@@ -118,11 +119,11 @@ pub fn export_levels(
     Ok(levels.collect())
 }
 
-/// The scene with each of these tolerances for all objects.
+/// One copy of the placed scene for each of these tolerances, which then holds for all objects.
 ///
 /// # Errors
 ///
-/// One tolerance twice.
+/// An error is returned if a tolerance is given twice.
 pub fn levels_of_detail(
     placed: &PlacedScene,
     tolerances: &[Tolerance],
@@ -137,23 +138,23 @@ pub fn levels_of_detail(
 }
 
 impl ExportLevel {
-    /// The scene, with the tolerances of this level.
+    /// The placed scene with the tolerances of this level.
     pub fn placed(&self) -> &PlacedScene {
         &self.placed
     }
 
-    /// The files of photosurfaces that will be written.
+    /// The files with photosurfaces that will be written.
     pub fn files(&self) -> &[PathBuf] {
         &self.files
     }
 
-    /// Where the report of this level goes, if there is to be one.
+    /// The file of this level's report, if one is to be written.
     pub fn report(&self) -> Option<&Path> {
         self.report.as_deref()
     }
 
-    /// Every file that will be written over or removed. The data of a `.gltf` has a new name, made of its content; the
-    /// data of the file that is replaced goes.
+    /// Every file that will be overwritten or removed. The data file of a new `.gltf` gets a name made from its
+    /// content; the data file of a replaced `.gltf` is removed.
     pub fn outputs(&self) -> impl Iterator<Item = PathBuf> {
         let files = self.files.iter();
         let gltf = files.clone().filter(|_| self.format == Format::Gltf);
@@ -161,17 +162,18 @@ impl ExportLevel {
         files.cloned().chain(replaced).chain(self.report.clone())
     }
 
-    /// How many pieces of work the level is: its photosurfaces.
+    /// The number of pieces of work for [`Progress`]: one for each photosurface of this level.
     pub fn pieces(&self) -> usize {
         let parts: usize = self.placed.objects().map(|(_, parts)| parts.len()).sum();
         parts * self.placed.scene().steps().len()
     }
 
-    /// Whether a file can hold what is seen, as far as that is known before the work.
+    /// Checks that a file can hold the photosurfaces, as far as that is known before they are made.
     ///
     /// # Errors
     ///
-    /// More bytes or vertices than the format has room for, or numbers beyond its range.
+    /// An error is returned if there are more bytes or vertices than the format has room for, or numbers beyond its
+    /// range.
     pub fn check(&self) -> Result<(), ExportError> {
         let steps = match self.settings.split {
             true => 1,
@@ -182,7 +184,7 @@ impl ExportLevel {
             .map_err(|source| ExportError::of_file(&self.files[0], source))
     }
 
-    /// The level with aims that are within the budget.
+    /// Loosens the aims of this level until they fit the budget.
     pub fn fit(self) -> FittedExport {
         let mut clock = Clock::after(&self.settings.stages_before);
         let wanted = SurfaceOptions {
@@ -202,7 +204,7 @@ impl ExportLevel {
     }
 }
 
-/// One level of detail of an export within its budget, before its photosurfaces are made.
+/// One level of detail of an export whose aims fit the budget, before its photosurfaces are made.
 #[derive(Clone, Debug)]
 pub struct FittedExport {
     level: ExportLevel,
@@ -212,19 +214,20 @@ pub struct FittedExport {
 }
 
 impl FittedExport {
-    /// What the tolerances need and what the budget leaves of them; `None` where nothing is subdivided.
+    /// The predictions, and how the budget loosens the tolerances; `None` if meshes are not subdivided.
     pub fn fitted(&self) -> Option<&Fitted> {
         self.fitted.as_ref()
     }
 
-    /// Makes and writes all photosurfaces, [`ExportLevel::pieces`] of them.
+    /// Makes and writes all photosurfaces; their number is [`ExportLevel::pieces`].
     ///
-    /// `before_it_appears` has the last word when all of the file is written and it is about to appear, or, of a file for
-    /// each step, when all are there: where it fails, so does the export, and the one file does not appear.
+    /// `before_it_appears` is called when the whole file is written and about to appear, or, with one file for each
+    /// step, after all files have appeared. If it fails, the export fails, and a single file does not appear.
     ///
     /// # Errors
     ///
-    /// A file cannot be written or hold a number; the end by `progress`.
+    /// An error is returned if a file cannot be written, if its format cannot hold a number, or if `progress` cancels
+    /// the export.
     pub fn write(
         self,
         progress: &dyn Progress,
@@ -249,11 +252,12 @@ impl FittedExport {
         Ok(exported(work, files.clone()))
     }
 
-    /// Makes all photosurfaces and writes them to a stream, as a PLY if that is the format, else as a GLB.
+    /// Makes all photosurfaces and writes them to a stream, as a PLY if that is the format, otherwise as a GLB.
     ///
     /// # Errors
     ///
-    /// The stream fails, or the format cannot hold a number; the end by `progress`.
+    /// An error is returned if the stream fails, if the format cannot hold a number, or if `progress` cancels the
+    /// export.
     pub fn write_to(
         self,
         out: &mut dyn Write,

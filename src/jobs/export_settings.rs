@@ -1,4 +1,4 @@
-//! What an export makes and how, and why it may have no result.
+//! Settings and errors of an export.
 
 use std::path::{Path, PathBuf};
 
@@ -9,32 +9,34 @@ use crate::pipeline::PlacedScene;
 use crate::scene::Tolerance;
 use crate::write::{FRAMES_PER_SECOND, Format, Playback, StageTime, WriteError};
 
-/// What an export makes of a placed scene.
+/// Settings for the export of a placed scene.
 #[derive(Clone, Debug)]
 pub struct ExportSettings {
     /// Whether each step has a file of its own: `out_step000.glb`, `out_step001.glb`, ...
     pub split: bool,
-    /// How the steps of one file follow each other; `None` for all at once.
+    /// How the steps of one file follow each other as an animation; with `None` all steps are visible at once.
     pub playback: Option<Playback>,
     /// Levels of detail: tolerances for all objects, each with files of its own, `out_lod0.glb`, `out_lod1.glb`, ...;
-    /// none for the tolerances of the scene.
+    /// if there are none, the tolerances of the scene are used.
     pub levels: Vec<Tolerance>,
-    /// Whether meshes are refined until they are within the tolerance; if not, every vertex of the source stays the only
-    /// one, and certificates tell how far off the meshes are.
+    /// Whether meshes are refined until they are within the tolerance; if not, no vertex is added, and the certificates
+    /// state the resulting bounds.
     pub subdivide: bool,
-    /// How many triangles all photosurfaces of one level have together at most. If a tolerance needs more, the
-    /// largest gaps are closed first and the result is not certified; triangles of a source stay, even if they are more.
+    /// Limit on the triangles of all photosurfaces of one level together. If a tolerance needs more, the largest gaps
+    /// are closed first and the result is not certified. The triangles of a source are always kept, even if they exceed
+    /// the limit.
     pub max_triangles: u64,
-    /// Where a JSON [`Report`](crate::write::Report) goes, if there is to be one; each level has its own.
+    /// The file of a JSON [`Report`](crate::write::Report), if one is to be written; each level has its own.
     pub report: Option<PathBuf>,
-    /// Whether [`Exported`](super::Exported) has the facts of every photosurface: about a kilobyte of memory for each.
+    /// Whether [`Exported`](super::Exported) holds the facts about every photosurface, which need about a kilobyte of
+    /// memory each.
     pub keep_facts: bool,
-    /// Stages that went before, with their times, for the report.
+    /// Stages that the caller has finished before the export, with their times, for the report.
     pub stages_before: Vec<StageTime>,
 }
 
 impl Default for ExportSettings {
-    /// All steps in one file, refined within the tolerances of the scene, by at most [`DEFAULT_MAX_TRIANGLES`].
+    /// All steps in one file, refined to the tolerances of the scene, with at most [`DEFAULT_MAX_TRIANGLES`].
     fn default() -> Self {
         Self {
             split: false,
@@ -49,51 +51,51 @@ impl Default for ExportSettings {
     }
 }
 
-/// Why an export has no result.
+/// Errors of an export.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// The name of the file says no format.
+    /// The extension of the file is not that of a known format.
     #[error("{}: unknown extension, expected .glb, .gltf or .ply", .0.display())]
     UnknownExtension(PathBuf),
-    /// An animation in a format that has no time.
+    /// An animation is asked for in a format that cannot hold one.
     #[error("a .ply has no time, expected .glb or .gltf for an animation")]
     NoTime,
-    /// An animation of one step.
+    /// An animation is asked for, but the scene has only one step.
     #[error("the scene has one step, expected at least two for an animation")]
     OneStep,
-    /// A number of frames a second that is out of range.
+    /// The number of frames per second is out of range.
     #[error("{0:?} frames a second, expected a number from 0.001 to 1000")]
     FramesPerSecond(f64),
-    /// Attributes, which differ from step to step, in one mesh for all steps.
+    /// Attributes, which differ from step to step, are asked for together with one mesh for all steps.
     #[error(
         "an animation by morphing shows one mesh, and attributes differ from step to step; expected no attributes"
     )]
     MorphingAttributes,
-    /// An animation and a file for each step.
+    /// An animation is asked for together with a file for each step.
     #[error("an animation is one file, expected it without a file for each step")]
     SplitPlayback,
-    /// Two levels of detail of one tolerance.
+    /// Two levels of detail have the same tolerance.
     #[error("the tolerance {0} is given twice among the levels of detail, expected each one once")]
     RepeatedLevel(Tolerance),
-    /// A file that must not be written.
+    /// A file must not be written.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// A file that cannot hold the photosurfaces, or cannot be written.
+    /// A file cannot hold the photosurfaces or cannot be written.
     #[error("{}", file.display())]
     File {
-        /// Which file.
+        /// The file.
         file: PathBuf,
-        /// Why.
+        /// The reason.
         source: WriteError,
     },
-    /// The caller ended the export: whole files stay, nothing else does.
+    /// The caller cancelled the export: finished files stay, unfinished ones are removed.
     #[error("cancelled")]
     Cancelled,
 }
 
 impl ExportError {
-    /// The error of a file; errors that name a file do not name it twice.
+    /// The error of a file. If `source` already names a file, the result does not name it twice.
     pub(crate) fn of_file(file: &Path, source: WriteError) -> Self {
         match source {
             WriteError::Cancelled => Self::Cancelled,
@@ -107,7 +109,7 @@ impl ExportError {
 }
 
 impl ExportSettings {
-    /// Whether the playback goes with the format, the scene and the other settings.
+    /// Checks that the playback is possible with the format, the scene and the other settings.
     pub(super) fn check(&self, placed: &PlacedScene, format: Format) -> Result<(), ExportError> {
         let Some(playback) = self.playback else {
             return Ok(());

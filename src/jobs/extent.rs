@@ -1,4 +1,4 @@
-//! How far places reach, in space and on the observer's sky: what a camera has to frame.
+//! The extent of a set of points, in space and on the observer's sky, which a camera has to frame.
 
 use std::f64::consts::PI;
 
@@ -6,25 +6,26 @@ use glam::DVec3;
 
 use crate::spacetime::harmless_scale;
 
-/// Number of directions that [`outermost`] looks in. About 20 degrees lie between two of them: what is round sticks out by
-/// less than 2 % of its radius between two places that are farthest out.
+/// Number of directions in which [`outermost`] searches for the farthest point. Neighbouring directions are about 20
+/// degrees apart, so a round object extends beyond the points found by less than 2 % of its radius.
 const DIRECTIONS: usize = 128;
 
-/// The middle of the part of the sky that places take up around the origin, as a unit vector; -z where there are none.
+/// The direction from the origin to the middle of the part of the sky that the points cover, as a unit vector; -z if
+/// there are no points.
 ///
-/// It is not the middle of the places in space: an observer may be in the midst of them.
+/// It differs from the direction to the middle of the points in space, because the observer may be in their midst.
 pub(super) fn middle_of_sky(places: &[DVec3]) -> DVec3 {
     let directions = places
         .iter()
         .filter_map(|place| scaled(*place).try_normalize());
-    // Not the mean of the vertices, of which there may be more on one side.
+    // The middle of the bounds is used, not the mean, because one side may have more vertices than the other.
     let (low, high) = bounds(directions);
     (low + high).try_normalize().unwrap_or(DVec3::NEG_Z)
 }
 
-/// The largest angle between the direction `middle` and any of the places, seen from the origin, in radians.
+/// The largest angle between the direction `middle` and the direction from the origin to any of the points, in radians.
 pub(super) fn angle_around(middle: DVec3, places: &[DVec3]) -> f64 {
-    // A cosine does not tell small angles apart.
+    // A cosine would lose the digits of small angles.
     let angle = |place: &DVec3| {
         let place = scaled(*place);
         place.cross(middle).length().atan2(place.dot(middle))
@@ -32,7 +33,7 @@ pub(super) fn angle_around(middle: DVec3, places: &[DVec3]) -> f64 {
     places.iter().map(angle).fold(0.0, f64::max)
 }
 
-/// The smallest and the largest coordinates of all places.
+/// The smallest and the largest coordinates of all points.
 pub(super) fn bounds(places: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
     places.fold(
         (DVec3::INFINITY, DVec3::NEG_INFINITY),
@@ -40,14 +41,14 @@ pub(super) fn bounds(places: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
     )
 }
 
-/// The largest absolute value of a coordinate of all places.
+/// The largest absolute value of a coordinate of any point.
 pub(super) fn reach<'a>(places: impl Iterator<Item = &'a DVec3>) -> f64 {
     places
         .map(|place| place.abs().max_element())
         .fold(0.0, f64::max)
 }
 
-/// The places that are farthest out, one for each of [`DIRECTIONS`] directions: all that a frame depends on.
+/// The points that are farthest out, one for each of [`DIRECTIONS`] directions. A frame depends only on these.
 pub(super) fn outermost(places: Vec<DVec3>) -> Vec<DVec3> {
     if places.len() <= DIRECTIONS {
         return places;
@@ -59,7 +60,7 @@ pub(super) fn outermost(places: Vec<DVec3>) -> Vec<DVec3> {
     directions().filter_map(farthest).collect()
 }
 
-/// Unit vectors evenly over the sphere, along a spiral of the golden angle.
+/// Unit vectors that are evenly spread over the sphere, along a spiral with the golden angle.
 fn directions() -> impl Iterator<Item = DVec3> {
     (0..DIRECTIONS).map(|index| {
         let height = (2.0 * index as f64 + 1.0) / DIRECTIONS as f64 - 1.0;
@@ -69,7 +70,8 @@ fn directions() -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// A vector of the same direction whose square neither overflows nor vanishes: the vector itself wherever it is one.
+/// A vector with the same direction whose square neither overflows nor vanishes: the vector itself if its square does
+/// neither.
 pub(super) fn scaled(vector: DVec3) -> DVec3 {
     vector * harmless_scale(vector)
 }
@@ -87,8 +89,8 @@ mod tests {
             .collect();
         let outer = outermost(ball.clone());
         assert!(outer.len() <= DIRECTIONS && outer.iter().all(|place| ball.contains(place)));
-        // What is farthest along a neighbouring direction is less far by twice what lies between the two at most, for
-        // all are within 1 of the origin.
+        // All points are within 1 of the origin. The farthest point along a neighbouring direction is therefore less
+        // far by at most twice the distance between the two directions.
         for direction in [DVec3::X, DVec3::Y, DVec3::ONE.normalize()] {
             let farthest = |places: &[DVec3]| {
                 let along = places.iter().map(|place| place.dot(direction));
@@ -106,7 +108,8 @@ mod tests {
         assert_eq!(outermost(few.clone()), few);
     }
 
-    /// A place so far away, or so close, that its square overflows or vanishes is seen where it is.
+    /// A point whose square overflows or vanishes, because it is very far or very near, still counts with its correct
+    /// direction.
     #[test]
     fn the_middle_of_the_sky_is_that_of_places_at_any_distance() {
         for distance in [1e-310, 1e-200, 1.0, 1e200, 1e305] {

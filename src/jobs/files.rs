@@ -1,4 +1,4 @@
-//! Names of files that a job writes, and which files it must not write over.
+//! Names of the files that a job writes, and checks that it overwrites no file that it must not.
 
 use std::collections::HashMap;
 use std::fs;
@@ -9,7 +9,7 @@ use thiserror::Error;
 use crate::pipeline::step_label;
 use crate::write::{WriteError, destination};
 
-/// The name with a suffix before its extension: `out.glb` and `_lod0` make `out_lod0.glb`.
+/// The path with a suffix before its extension: `out.glb` and `_lod0` make `out_lod0.glb`.
 pub fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     if suffix.is_empty() {
         return path.to_owned();
@@ -23,17 +23,17 @@ pub fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// A file for each step: `out_step000.glb`, `out_step001.glb`, ...
+/// The names of one file for each step: `out_step000.glb`, `out_step001.glb`, ...
 pub fn file_for_each_step(path: &Path, steps: usize) -> Vec<PathBuf> {
     let file = |step| with_suffix(path, &format!("_{}", step_label(step)));
     (0..steps).map(file).collect()
 }
 
-/// Why a job must not write a file.
+/// Reasons why a job must not write a file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum OutputError {
-    /// The file stands where the job reads.
+    /// The output file is also an input file of the job.
     #[error(
         "the output {} would overwrite the input {}; choose another name for the output",
         output.display(),
@@ -45,7 +45,7 @@ pub enum OutputError {
         /// The file that is read.
         input: PathBuf,
     },
-    /// Two outputs are one file.
+    /// Two outputs are the same file.
     #[error(
         "the output {} would overwrite another output, {}; choose another name for one of them",
         output.display(),
@@ -54,7 +54,7 @@ pub enum OutputError {
     Output {
         /// The file to be written.
         output: PathBuf,
-        /// The other name of it.
+        /// The other name of the same file.
         other: PathBuf,
     },
     /// The file cannot be written.
@@ -62,12 +62,12 @@ pub enum OutputError {
     Write(#[from] WriteError),
 }
 
-/// Looks, before any work, whether every file of `written` can be written, is none of those that are `read`, and is the
-/// same as no other one; links are followed.
+/// Checks, before any work, that every file of `written` can be written, is not one of the files `read`, and differs
+/// from all other files of `written`; links are followed.
 ///
 /// # Errors
 ///
-/// The first file of which that is not so.
+/// The first file that fails the check.
 pub fn check_outputs(
     written: impl IntoIterator<Item = PathBuf>,
     read: &[PathBuf],

@@ -1,4 +1,4 @@
-//! Cameras that frame what there is to be seen, at the observer and outside.
+//! Cameras that frame the visible objects: the observer's camera and cameras outside.
 
 use glam::DVec3;
 use thiserror::Error;
@@ -14,25 +14,27 @@ pub const OBSERVER_FOV_DEG: f64 = 60.0;
 /// Vertical field of view of an outside camera that stands so far away that everything is in the picture, in degrees.
 const OUTSIDE_FOV_DEG: f64 = 30.0;
 
-/// Direction from what is shown to an outside camera if no other is given: in front, a little above and to the right.
+/// Default direction from the objects to an outside camera: in front, a little above and to the right.
 const AWAY: DVec3 = DVec3::new(0.3, 0.3, 1.0);
 
-/// Extent of a frame in units of the extent of its contents: the rest is a margin.
+/// Extent of a frame divided by the extent of its contents; the difference is a margin.
 const FRAME: f64 = 1.08;
 
-/// Range of the fields of view that fit something, in degrees.
+/// Range of the vertical fields of view that are computed to fit the contents, in degrees.
 const FITTING_FOV_DEG: std::ops::RangeInclusive<f64> = 1e-6..=100.0;
 
-/// The largest field of view, in degrees, for which the distance of an outside camera is computed.
+/// The largest vertical field of view, in degrees, for which the distance of an outside camera is computed.
 const MAX_FRAMED_FOV_DEG: f64 = 179.0;
 
 /// How much of the sky a picture shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FieldOfView {
-    /// A pinhole camera for which everything at every step is in the picture. The observer's has the narrowest field of
-    /// view that does this, from 1e-6 to 100 degrees; one outside has 30 degrees and stands far enough away.
+    /// A pinhole camera that has everything at every step in the picture. The observer's camera has the narrowest
+    /// vertical field of view that does this, from 1e-6 to 100 degrees; a camera outside has 30 degrees and stands far
+    /// enough away.
     Fitting,
-    /// A pinhole camera with this angle from the lower to the upper edge, in degrees, above 0 and below 180.
+    /// A pinhole camera with this angle from the lower to the upper edge of the picture, in degrees, above 0 and below
+    /// 180.
     Degrees(f64),
     /// The whole sky in longitude and latitude.
     FullSky,
@@ -41,76 +43,77 @@ pub enum FieldOfView {
 /// Where a camera looks, in the observer's frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Aim {
-    /// The middle of all that is there. The observer looks at the middle of the part of the sky that it takes up, at each
-    /// step anew.
+    /// The middle of all objects. The observer looks at the middle of the part of the sky that they cover, at each step
+    /// anew.
     #[default]
     Middle,
     /// A direction, as a vector of any length.
     Look(DVec3),
-    /// A place, in scene units.
+    /// A point, in scene units.
     Target(DVec3),
 }
 
-/// The settings that cameras of the observer and outside ones have in common.
+/// The settings that the observer's camera and cameras outside have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraSettings {
     /// Width and height of a picture, in pixels.
     pub size: PictureSize,
-    /// How much of the sky it shows.
+    /// How much of the sky the picture shows.
     pub field_of_view: FieldOfView,
     /// Where the camera looks.
     pub aim: Aim,
 }
 
-/// Why no camera frames what there is to be seen.
+/// Errors of framing: why no camera has all objects in the picture.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FramingError {
-    /// A field of view out of range, or a direction that is zero or not finite.
+    /// A field of view is out of range, or a direction is zero or not finite.
     #[error(transparent)]
     Camera(#[from] CameraError),
-    /// An aim that is the place of the camera itself, in scene units.
+    /// The target of the camera is its own position, given here in scene units.
     #[error("the camera is to look at {0}, which is its own place, expected another target")]
     TargetIsCamera(DVec3),
-    /// A given place of an outside camera that is the very middle of what is shown, in scene units.
+    /// The given position of an outside camera, here in scene units, is the middle of the objects, so that the camera
+    /// has no direction to look in.
     #[error(
         "the camera is at {0}, the middle of what is shown, expected another place or a direction to look in"
     )]
     CameraInMiddle(DVec3),
-    /// A place or target of an outside camera that is not finite.
+    /// The position or target of an outside camera is not finite.
     #[error("the place or target of the camera is {0}, expected finite coordinates")]
     NotFinite(DVec3),
-    /// Places too far out for an outside camera to be placed in `f64`.
+    /// The objects are so far away or so large that no position of an outside camera within `f64` frames them.
     #[error(
         "what is to be seen is so far away or so large, up to {reach:e}, that no camera outside can frame it"
     )]
     TooFar {
-        /// The largest absolute value of a coordinate of what is to be seen, in scene units.
+        /// The largest absolute value of an object's coordinate, in the observer's frame, in scene units.
         reach: f64,
     },
-    /// A scene without photosurfaces at a step.
+    /// The scene has no photosurfaces at a step.
     #[error(transparent)]
     PlacedScene(#[from] PlacedSceneError),
 }
 
-/// A camera outside, in the observer's frame.
+/// A camera outside, with all its lengths in the observer's frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OutsideCamera {
     pub(super) camera: Camera,
-    /// The place of the camera, in scene units.
+    /// The position of the camera, in scene units.
     pub(super) place: DVec3,
-    /// The height of the picture at the distance of what it shows, in scene units.
+    /// The height of the picture at the distance of the camera's target, in scene units.
     pub(super) height: f64,
-    /// Whether the picture has one scale at that distance; one of the whole sky has none.
+    /// Whether the picture has one scale at that distance; a picture of the whole sky does not.
     pub(super) has_scale: bool,
 }
 
 impl CameraSettings {
-    /// One camera of the observer for each step of a scene, in their order and with one field of view.
+    /// The observer's camera for each step of a scene, in the order of the steps; all have the same field of view.
     ///
     /// # Errors
     ///
-    /// A field of view out of range, or an aim that is no direction.
+    /// An error is returned if the field of view is out of range or the aim gives no direction.
     pub fn observer_cameras(&self, placed: &PlacedScene) -> Result<Vec<Camera>, FramingError> {
         let steps = 0..placed.scene().steps().len();
         let fov = self.observer_fov_deg(steps.clone().map(|step| seen_vertices(placed, step)))?;
@@ -118,7 +121,7 @@ impl CameraSettings {
         steps.map(camera).collect()
     }
 
-    /// Vertical field of view of the observer at all steps, in degrees, from the places that are seen at each of them.
+    /// Vertical field of view of the observer's camera at all steps, in degrees, from the seen positions at each step.
     pub(super) fn observer_fov_deg<E>(
         &self,
         mut places: impl Iterator<Item = Result<Vec<DVec3>, E>>,
@@ -132,7 +135,8 @@ impl CameraSettings {
         }
     }
 
-    /// The camera of the observer, with a vertical field of view in degrees; `places` are those of what is seen.
+    /// The observer's camera, with a vertical field of view in degrees; `places` are the seen positions, in the
+    /// observer's frame.
     pub(super) fn observer_camera(
         &self,
         fov_deg: f64,
@@ -146,8 +150,9 @@ impl CameraSettings {
         self.camera(fov_deg, look, None)
     }
 
-    /// One camera for each list of places, in scene units, that frames them; all at one distance. `from` is the place of
-    /// all of them instead.
+    /// One camera for each list of positions, in the observer's frame and in scene units. Each camera frames its list,
+    /// and all have the same distance from their targets. If `from` is given, it is the position of all cameras
+    /// instead.
     pub(super) fn outside_cameras(
         &self,
         from: Option<DVec3>,
@@ -174,7 +179,7 @@ impl CameraSettings {
             Aim::Look(look) => -scaled(look).normalize_or_zero(),
             _ => AWAY.normalize(),
         };
-        // A camera of no direction or field of view is an error in a moment.
+        // A camera without a direction or a field of view causes an error below.
         let right = away.cross(DVec3::NEG_Y).try_normalize().unwrap_or(DVec3::X);
         let axes = [right, away.cross(right), away];
         let aspect = f64::from(self.size.width()) / f64::from(self.size.height());
@@ -228,7 +233,7 @@ impl CameraSettings {
     }
 }
 
-/// Where the given vertices of a scene's objects are seen at one step, in the observer's frame, in scene units.
+/// Where the source vertices of a scene's objects are seen at one step, in the observer's frame, in scene units.
 pub(super) fn seen_vertices(
     placed: &PlacedScene,
     step: usize,
@@ -243,19 +248,21 @@ pub(super) fn seen_vertices(
         .collect())
 }
 
-/// The vertical field of view in which the observer, who looks at their middle, has all places in the picture, in degrees.
+/// The vertical field of view, in degrees, with which the observer's camera, aimed at the middle of the positions, has
+/// all of them in the picture.
 fn fitting_fov_deg(places: &[DVec3], size: PictureSize) -> f64 {
     let half = angle_around(middle_of_sky(places), places) * FRAME;
-    // The narrower side of the picture holds it.
+    // The shorter side of the picture has to hold the angle.
     let aspect = f64::from(size.width()) / f64::from(size.height());
     let tan = half.min(1.5).tan() / aspect.min(1.0);
     (2.0 * tan.atan().to_degrees()).clamp(*FITTING_FOV_DEG.start(), *FITTING_FOV_DEG.end())
 }
 
-/// The place that a camera has to look at to frame places, unless it has a `target`, and how far from there it has to be.
+/// The point that a camera has to look at to frame the positions `places`, or `target` if that is given, and the
+/// smallest distance from that point at which the camera frames them.
 ///
-/// `axes` point right, up and from the target to the camera; `half` is the tangent of half the vertical field of view, and
-/// `aspect` the width of the picture in heights.
+/// `axes` point right, up and from the target to the camera; `half` is the tangent of half the vertical field of view,
+/// and `aspect` the picture's width divided by its height.
 fn frame(
     places: &[DVec3],
     target: Option<DVec3>,
@@ -264,12 +271,12 @@ fn frame(
 ) -> (DVec3, f64) {
     let local = |place: &DVec3| DVec3::new(place.dot(right), place.dot(up), place.dot(away));
     let (low, high) = bounds(places.iter().map(local));
-    // Halves first: the sum of two large numbers may overflow.
+    // Each number is halved first, because the sum of two large numbers may overflow.
     let middle = low / 2.0 + high / 2.0;
     let middle = right * middle.x + up * middle.y + away * middle.z;
     let target = match target {
         Some(target) => target,
-        // Nothing is framed as well by one place as by another.
+        // Without positions any target frames them equally well.
         None if places.is_empty() => DVec3::ZERO,
         None => middle,
     };
@@ -282,8 +289,8 @@ fn frame(
     (target, distance.max(min_distance(target, distance)))
 }
 
-/// How far from `target` a camera has to be at least, so that it looks at it in spite of roundings, and at a single point
-/// from somewhere.
+/// The smallest distance from `target` that a camera may have: enough for its direction to survive rounding, and above
+/// zero if `distance` is zero, as for a single point.
 fn min_distance(target: DVec3, distance: f64) -> f64 {
     let least = target.abs().max_element() * 1e-12;
     if distance > 0.0 {
@@ -303,7 +310,7 @@ mod tests {
         PictureSize::new(width, height).unwrap()
     }
 
-    /// Sizes and distances from nothing to the largest numbers, and no places at all.
+    /// Lists of positions with sizes and distances from zero to the largest numbers, and an empty list.
     fn frames() -> Vec<Vec<DVec3>> {
         let sizes = [
             0.0, 1e-300, 1e-155, 1e-30, 1e-9, 1.0, 1e30, 1e152, 1e156, 1e290, 1e308,
@@ -319,8 +326,8 @@ mod tests {
         frames
     }
 
-    /// Whatever is framed: nothing, one point, tiny and huge things, far and near. The camera is finite and looks at the
-    /// middle, or there is one error that says what is wrong.
+    /// The frames contain nothing, one point, or tiny and huge objects, far and near. In each case the camera is finite
+    /// and looks at the middle, or there is an error with the reason.
     #[test]
     fn every_frame_is_finite_or_an_error() {
         let plain = CameraSettings {

@@ -9,10 +9,10 @@ use crate::pipeline::PlacedScene;
 use crate::render::{Picture, Scenery, Strokes, Viewpoint, lettering_width};
 use crate::shape::Color;
 
-/// Where the surface of a ghost turns by more than this, in radians, an edge is drawn.
+/// An edge of a ghost is drawn if the normals of its two faces differ by more than this angle, in radians.
 const SHARP: f64 = 0.5;
 
-/// Height of letters as a part of a picture's, in pixels at least 8.
+/// Height of letters as a fraction of the picture's height; at least 8 pixels are used.
 const LETTERS: f64 = 1.0 / 30.0;
 
 const RED: Color = Color([0xe7, 0x4c, 0x3c]);
@@ -22,12 +22,12 @@ const BLUE: Color = Color([0x3d, 0x8b, 0xe8]);
 /// Marks in pictures from outside that help to read them; the default is none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Guides {
-    /// Other shapes of each object to hint at; one that is named twice is drawn twice.
+    /// Other shapes of each object that are drawn as ghosts; a ghost that is listed twice is drawn twice.
     pub ghosts: Vec<Ghost>,
-    /// Whether the observer's axes are drawn at its place: x red, y green, z blue.
+    /// Whether the observer's axes are drawn at the observer: x red, y green, z blue.
     pub axes: bool,
-    /// Whether a bar of a round length, in scene units, is drawn: as long as it is in the middle of what is shown. Pictures
-    /// of the whole sky have no scale and no bar.
+    /// Whether a bar is drawn that shows a round length, in scene units, at the distance of the camera's target.
+    /// Pictures of the whole sky have no scale and no bar.
     pub scale_bar: bool,
     /// Whether the edges of all triangles of photosurfaces are drawn, also in the observer's pictures of them.
     pub wireframe: bool,
@@ -36,9 +36,9 @@ pub struct Guides {
 /// Another shape of an object, shown beside its photosurface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ghost {
-    /// The object as it is at rest, around the place where its middle is seen (blue).
+    /// The object as it is in its rest frame, around the point where its middle is seen (blue).
     Rest,
-    /// The object where it is at the moment of observation in the observer's frame, contracted by its motion (orange).
+    /// The object where it is in the observer's frame at the moment of observation, with Lorentz contraction (orange).
     Contracted,
 }
 
@@ -96,7 +96,7 @@ impl Guides {
         ghosts
     }
 
-    /// Draws the edges of ghosts, and the axes and the bar that are asked for, onto a picture from outside.
+    /// Draws the edges of ghosts, and the axes and the bar if they are asked for, onto a picture from outside.
     pub(super) fn draw(
         &self,
         picture: &mut Picture,

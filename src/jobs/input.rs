@@ -1,4 +1,4 @@
-//! From a file to a placed scene: a scene with its models, or a mesh by itself.
+//! From a file to a placed scene: the file holds a scene with its models, or a mesh by itself.
 
 use std::path::{Path, PathBuf};
 
@@ -11,92 +11,93 @@ use crate::pipeline::{PlacedScene, PlacedSceneError};
 use crate::read::{Access, ReadError, read_whole};
 use crate::scene::{InvalidScene, Object, Observer, Place, PlaceError, Scene, SceneError, Source};
 
-/// How many bytes the text of a scene has at most: some hundred thousand objects.
+/// Limit on the bytes of a scene's text, enough for some hundred thousand objects.
 pub const MAX_SCENE_BYTES: u64 = 100_000_000;
 
-/// Beyond the centre of a mesh by itself, by how many diagonals of its bounds the observer stands off.
+/// Distance of the observer from the centre of a mesh by itself, in diagonals of the mesh's bounds.
 const STAND_OFF: f64 = 2.0;
 
-/// Why bytes are not the text of a scene.
+/// Reasons why bytes are not the text of a scene.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SceneTextError {
-    /// A byte that UTF-8 does not have in this place.
+    /// A byte is not valid UTF-8 at its position.
     #[error("not text in UTF-8: byte {offset}, counted from 0, is {byte:#04x}")]
     NotText {
-        /// Which byte, from 0.
+        /// Position of the byte, counted from 0.
         offset: usize,
-        /// Its value.
+        /// Value of the byte.
         byte: u8,
     },
-    /// Text that is no scene.
+    /// The text is not a scene.
     #[error(transparent)]
     Scene(#[from] SceneError),
 }
 
-/// Why a file makes no placed scene.
+/// Errors of reading a placed scene from a file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum InputError {
-    /// A name that says neither a scene nor a mesh.
+    /// The extension is neither that of a scene nor that of a mesh.
     #[error("{}: unknown extension, expected a scene (.json) or a mesh (.glb, .gltf, .obj)", .0.display())]
     UnknownExtension(PathBuf),
     /// The file cannot be read.
     #[error("{}", file.display())]
     Read {
-        /// Which file.
+        /// The file.
         file: PathBuf,
-        /// What is wrong with it.
+        /// The error.
         source: ReadError,
     },
-    /// The text of the file is no scene.
+    /// The text of the file is not a scene.
     #[error("{}", file.display())]
     Text {
-        /// Which file.
+        /// The file.
         file: PathBuf,
-        /// What is wrong with it.
+        /// The error.
         source: SceneTextError,
     },
     /// An object of the scene has no geometry.
     #[error("{}", file.display())]
     Load {
-        /// Which scene.
+        /// The file of the scene.
         file: PathBuf,
-        /// Which object, and why.
+        /// The error of the object.
         source: LoadError,
     },
-    /// A mesh that makes no scene by itself.
+    /// A mesh by itself does not make a valid scene.
     #[error(transparent)]
     Scene(#[from] InvalidScene),
-    /// A mesh so large that no observer can stand off from it.
+    /// A mesh is so large that the observer's position would be out of range.
     #[error(transparent)]
     Place(#[from] PlaceError),
-    /// Geometry that cannot be placed.
+    /// The geometry cannot be placed.
     #[error(transparent)]
     Placed(#[from] PlacedSceneError),
 }
 
 impl PlacedScene {
-    /// Reads a scene (.json) with the models of its objects, or a mesh by itself (.glb, .gltf, .obj), and says what there
-    /// is to know about each file. Of the files that others name, those are read that [`Access::default`] allows.
+    /// Reads a scene (.json) with the models of its objects, or a mesh by itself (.glb, .gltf, .obj); returns the
+    /// findings about each file as well. A file that another file names is read only if [`Access::default`] allows it.
     ///
-    /// A mesh by itself is at rest at the origin, and the observer two diagonals of its bounds before its centre, at rest,
-    /// looking along -z: [`Scene::with_observer`] and [`PlacedScene::new`] say otherwise.
+    /// A mesh by itself is at rest at the origin. The observer is at rest, two diagonals of the mesh's bounds in front
+    /// of its centre, and looks along -z; [`Scene::with_observer`] and [`PlacedScene::new`] make a scene with another
+    /// observer.
     ///
     /// # Errors
     ///
-    /// A file that cannot be read or is not as its format defines it, or geometry that cannot be placed.
+    /// An error is returned if a file cannot be read or does not follow its format, or if geometry cannot be placed.
     pub fn load(path: &Path) -> Result<(Self, FileFindings), InputError> {
         Access::default().load(path)
     }
 }
 
 impl Access {
-    /// As [`PlacedScene::load`].
+    /// The same as [`PlacedScene::load`], with this access.
     ///
     /// # Errors
     ///
-    /// As [`PlacedScene::load`], and a file that may not be read.
+    /// The errors of [`PlacedScene::load`], and the error of a file that may not be read.
     pub fn load(&self, path: &Path) -> Result<(PlacedScene, FileFindings), InputError> {
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
         let wrong = |source| InputError::Read {
@@ -137,7 +138,7 @@ impl Access {
 ///
 /// # Errors
 ///
-/// Bytes that are not text, or text that is no scene.
+/// An error is returned if the bytes are not text or the text is not a scene.
 pub fn scene_from_bytes(bytes: &[u8]) -> Result<Scene, SceneTextError> {
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let offset = error.valid_up_to();
@@ -149,12 +150,12 @@ pub fn scene_from_bytes(bytes: &[u8]) -> Result<Scene, SceneTextError> {
     Ok(Scene::from_json(text)?)
 }
 
-/// The scene with its observer two diagonals of a model's bounds before the centre of the model, which stands at the
-/// origin, so that the observer moves towards it.
+/// The scene with its observer at another position: two diagonals of the model's bounds from the centre of these
+/// bounds, and moving towards it. The origin of the model is the origin of the scene.
 ///
 /// # Errors
 ///
-/// A place that is beyond the range of places.
+/// An error is returned if the observer's position is out of range.
 pub fn stand_off(scene: Scene, model: &Model) -> Result<Scene, PlaceError> {
     let observer = *scene.observer();
     let position = match model.bounds() {

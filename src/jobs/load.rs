@@ -1,4 +1,4 @@
-//! The geometry of a scene's objects: files are read, shapes are made.
+//! The geometry of a scene's objects: this file reads model files and makes shapes.
 
 use std::collections::HashMap;
 use std::fs;
@@ -11,31 +11,31 @@ use crate::read::{Access, Findings, ReadError, read_named_model};
 use crate::scene::{Scene, Source};
 use crate::shape::ShapeError;
 
-/// Why an object has no geometry.
+/// Reasons why an object has no geometry.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// Its file cannot be read.
+    /// The file of the object cannot be read.
     #[error("object \"{object}\"{}", in_file(path, source))]
     File {
-        /// Which object.
+        /// The name of the object.
         object: String,
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The error.
         source: Box<ReadError>,
     },
-    /// Its shape cannot be made.
+    /// The shape of the object cannot be made.
     #[error("object \"{object}\"")]
     Shape {
-        /// Which object.
+        /// The name of the object.
         object: String,
-        /// What is wrong with it.
+        /// The error.
         source: ShapeError,
     },
 }
 
-/// The name of the file, unless its error says it already.
+/// The name of the file for an error message, unless the error already contains it.
 fn in_file(path: &Path, source: &ReadError) -> String {
     match source.file() {
         Some(named) if named == path => String::new(),
@@ -43,7 +43,7 @@ fn in_file(path: &Path, source: &ReadError) -> String {
     }
 }
 
-/// The folder of a file with all links followed, and its name.
+/// The path of a file, with all links in the path of its folder resolved.
 fn place_of(path: &Path) -> PathBuf {
     let folder = path
         .parent()
@@ -54,16 +54,16 @@ fn place_of(path: &Path) -> PathBuf {
     }
 }
 
-/// What there is to know about each of the files that objects name.
+/// The findings about each of the files that objects name.
 pub type FileFindings = Vec<(PathBuf, Findings)>;
 
-/// One model for each object of a scene, in their order, and what there is to know about the files; file
-/// names are relative to `directory`, and those are read that [`Access::default`] allows. A file that several objects use
+/// One model for each object of a scene, in the order of the objects, and the findings about the files. File names are
+/// relative to `directory`, and a file is read only if [`Access::default`] allows it. A file that several objects use
 /// is read once.
 ///
 /// # Errors
 ///
-/// The first file that cannot be read, or shape that cannot be made.
+/// An error names the first file that cannot be read or the first shape that cannot be made.
 pub fn load_models(
     scene: &Scene,
     directory: &Path,
@@ -72,18 +72,18 @@ pub fn load_models(
 }
 
 impl Access {
-    /// As [`load_models`]; `directory` is the folder of the scene.
+    /// The same as [`load_models`], with this access; `directory` is the folder of the scene.
     ///
     /// # Errors
     ///
-    /// As [`load_models`], and a file that may not be read.
+    /// The errors of [`load_models`], and the error of a file that may not be read.
     pub fn load_models(
         &self,
         scene: &Scene,
         directory: &Path,
     ) -> Result<(Vec<Model>, FileFindings), LoadError> {
         let reach = self.reach(directory);
-        // By folder and name, whatever way leads to the folder.
+        // Models by folder and file name; links to the folder are resolved.
         let mut known: HashMap<PathBuf, Model> = HashMap::new();
         let mut files = Vec::new();
         let mut models = Vec::with_capacity(scene.objects().len());

@@ -1,4 +1,4 @@
-//! What the program does, for everyone who calls the library.
+//! The tasks of the program (load, export, render), for every caller of the library.
 
 mod ahead;
 mod budget;

@@ -13,10 +13,10 @@ use crate::render::{CameraError, PictureOptions, PictureSize};
 use crate::shape::Color;
 use crate::tessellate::Precision;
 
-/// Pixels between the views of a sheet.
+/// Distance between the views of a sheet, in pixels.
 pub(super) const GAP: u32 = 4;
 
-/// The size of a sheet of so many steps, with two views of `size` for each.
+/// The size of a sheet with `steps` steps and two views of `size` for each step.
 pub(super) fn sheet_size(size: PictureSize, steps: usize) -> Result<PictureSize, CameraError> {
     let columns = (steps as u64).saturating_mul(u64::from(size.width() + GAP));
     let width = columns.saturating_sub(u64::from(GAP));
@@ -29,22 +29,22 @@ pub(super) fn sheet_size(size: PictureSize, steps: usize) -> Result<PictureSize,
 /// Which pictures of a scene are drawn, and from where.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PictureView {
-    /// What the observer sees: one picture for each step.
+    /// The observer's view: one picture for each step.
     Observer(PictureMethod),
-    /// Photosurfaces from any other place, together with the observer's marker, if the scene has one.
+    /// Photosurfaces seen from outside, together with the observer's marker, if the scene has one.
     Outside {
-        /// The place of the camera in the observer's frame, in scene units; with `None` it is where everything at every
-        /// step is in the picture.
+        /// The position of the camera in the observer's frame, in scene units; with `None` the camera stands where it
+        /// has everything at every step in the picture.
         from: Option<DVec3>,
         /// Whether the photosurfaces of all steps are in one picture; if not, there is one picture for each step.
         together: bool,
     },
-    /// One picture of all steps, a column for each: above, what the observer sees, labelled with its proper time; below,
-    /// the photosurface from outside, all at one scale.
+    /// One picture of all steps, with a column for each step. The upper row shows the observer's view, labelled with
+    /// the observer's proper time. The lower row shows the photosurface from outside, all at one scale.
     Sheet {
         /// How the observer's views are drawn.
         method: PictureMethod,
-        /// The place of all cameras outside, as for [`PictureView::Outside`].
+        /// The position of all cameras outside, as for [`PictureView::Outside`].
         from: Option<DVec3>,
     },
 }
@@ -52,34 +52,35 @@ pub enum PictureView {
 /// How the observer's view is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PictureMethod {
-    /// By rays of light, followed back to where they came from: exact at every pixel.
+    /// By rays of light that are followed back to the surfaces from which they came: exact at every pixel.
     #[default]
     Rays,
-    /// By looking at the photosurfaces, within their tolerance.
+    /// By drawing the photosurfaces, which are exact within their tolerance.
     Mesh,
 }
 
-/// Everything that the pictures of a scene depend on beside the scene.
+/// All settings on which the pictures of a scene depend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureSettings {
     /// Which pictures are drawn, and from where.
     pub view: PictureView,
-    /// The cameras. On a sheet the size is that of each view.
+    /// The settings of the cameras. On a sheet the size is the size of each view.
     pub camera: CameraSettings,
-    /// Number of rays per pixel along each side: N is N x N rays.
+    /// Number of rays along each side of a pixel: N gives N x N rays per pixel.
     pub samples: NonZeroU32,
     /// The colour where nothing is seen.
     pub background: Color,
     /// Marks in views from outside.
     pub guides: Guides,
-    /// How photosurfaces are made where they are in the pictures. A number of triangles that they may have together is a
-    /// matter of the placed scene: see [`Fitted`](crate::jobs::Fitted).
+    /// How photosurfaces are made if the pictures show them. A limit on their triangles belongs to the placed scene;
+    /// see [`Fitted`](crate::jobs::Fitted).
     pub surface_options: SurfaceOptions,
 }
 
 impl PictureSettings {
-    /// The settings that the command `photosurface render` starts from: 1280 by 720 pixels, on a sheet 320 by 240 for each
-    /// view, nine rays per pixel; 60 degrees for the observer, and cameras that have everything in the picture otherwise.
+    /// The default settings of the command `photosurface render`: 1280 by 720 pixels, or 320 by 240 for each view of a
+    /// sheet, and nine rays per pixel. In pictures of the observer's view alone the vertical field of view is 60
+    /// degrees; on a sheet and outside, the cameras have everything in the picture.
     pub fn new(view: PictureView) -> Self {
         let [width, height] = match view {
             PictureView::Sheet { .. } => [320, 240],
@@ -107,11 +108,12 @@ impl PictureSettings {
         }
     }
 
-    /// The size of the pictures of a scene with so many steps, in pixels: that of the camera, or of the whole sheet.
+    /// The size, in pixels, of the pictures of a scene with `steps` steps: the size of the camera's picture or of the
+    /// whole sheet.
     ///
     /// # Errors
     ///
-    /// A sheet with more pixels along one side than a picture may have.
+    /// An error is returned if a sheet has more pixels along one side than a picture may have.
     pub fn picture_size(&self, steps: usize) -> Result<PictureSize, CameraError> {
         match self.view {
             PictureView::Sheet { .. } => sheet_size(self.camera.size, steps),
@@ -119,7 +121,7 @@ impl PictureSettings {
         }
     }
 
-    /// Number of pictures of a scene with so many steps.
+    /// Number of pictures of a scene with `steps` steps.
     pub fn picture_count(&self, steps: usize) -> usize {
         match self.view {
             PictureView::Sheet { .. } | PictureView::Outside { together: true, .. } => 1,
@@ -127,8 +129,8 @@ impl PictureSettings {
         }
     }
 
-    /// The files that [`render_to_files`] makes of a scene with so many steps, in the order of the pictures: `path` itself
-    /// for one picture, `NAME_step000.png`, `NAME_step001.png` and so on beside it for several.
+    /// The files that [`render_to_files`] makes of a scene with `steps` steps, in the order of the pictures: `path`
+    /// itself for one picture; `NAME_step000.png`, `NAME_step001.png` and so on in the same folder for several.
     pub fn files(&self, path: &Path, steps: usize) -> Vec<PathBuf> {
         match self.picture_count(steps) {
             1 => vec![path.to_owned()],
@@ -136,7 +138,8 @@ impl PictureSettings {
         }
     }
 
-    /// Number of rows of all views of a scene with so many steps: the pieces of work that [`Progress`] hears of.
+    /// Number of pixel rows of all views of a scene with `steps` steps: the pieces of work that are reported to
+    /// [`Progress`].
     pub(super) fn rows(&self, steps: usize) -> usize {
         let views = match self.view {
             PictureView::Sheet { .. } => 2 * steps,

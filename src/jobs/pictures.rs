@@ -12,16 +12,18 @@ use crate::pipeline::PlacedScene;
 use crate::render::{Picture, Textures};
 use crate::write::write_whole;
 
-/// Draws pictures of a scene: one of each step, or one of all of them, as `settings.view` says.
+/// Draws pictures of a scene: one for each step, or one for all steps, depending on `settings.view`.
 ///
-/// `finished` has each picture as soon as it is drawn, with its number, counted from 0; an error that it returns ends the
-/// job. `progress` hears of each row of each view. Textures that cannot be decoded are left out and are among
-/// [`Textures::missing`] afterwards. Pictures are the same, to the byte, for any number of threads.
+/// `finished` is called with each picture as soon as it is drawn, and with the picture's number, counted from 0; an
+/// error that it returns ends the job. `progress` gets a report of each row of pixels of each view. Textures that
+/// cannot be decoded are left out and are among [`Textures::missing`] afterwards. Pictures are the same, to the byte,
+/// for any number of threads.
 ///
 /// # Errors
 ///
-/// A [`RenderError`] as an error of the caller's type: settings for which there is no camera, a sheet that is too large,
-/// the end of the job by `progress`; or an error of `finished`. Pictures that were finished before stay with the caller.
+/// The errors are a [`RenderError`], converted to the caller's type, if the settings allow no camera, if a sheet is too
+/// large or if `progress` cancels the job; or an error of `finished`. Pictures that were finished before stay with the
+/// caller.
 ///
 /// # Example
 ///
@@ -78,13 +80,13 @@ pub fn render<E: From<RenderError>>(
     Ok(views.rendered)
 }
 
-/// Draws pictures as [`render()`] does and writes each as PNG to its one of [`PictureSettings::files`], as soon as
-/// it is drawn. A file appears whole or not at all.
+/// Draws pictures as [`render()`] does, and writes each as PNG to its file of [`PictureSettings::files`] as soon as it
+/// is drawn. A file appears whole or not at all.
 ///
 /// # Errors
 ///
-/// As [`render()`], or a file that cannot be written; that is found out before anything is drawn where it can be.
-/// Files that were finished before stay.
+/// The errors of [`render()`], or the error of a file that cannot be written, which is found before anything is drawn
+/// if possible. Files that were finished before stay.
 pub fn render_to_files(
     placed: &PlacedScene,
     textures: &Textures,

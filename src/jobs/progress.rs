@@ -1,20 +1,21 @@
-//! How far a job has got, and whether it goes on.
+//! The progress of a job, and its cancellation.
 
 use thiserror::Error;
 
-/// The caller's ear and hand in a job that takes long: it hears how far the job has got, and may end it.
+/// A long job reports its progress to the caller through this trait, and the caller may cancel the job.
 ///
-/// A job calls it from several threads. `()` hears nothing and ends nothing.
+/// A job calls the methods from several threads. `()` ignores all reports and never cancels.
 pub trait Progress: Sync {
-    /// The job has `pieces` pieces of work before it: photosurfaces of an export, rows of pictures.
+    /// The job is about to start and has `pieces` pieces of work: photosurfaces of an export, or rows of pixels of
+    /// pictures.
     fn begin(&self, pieces: usize);
 
     /// `pieces` more pieces of work are done.
     ///
     /// # Errors
     ///
-    /// [`Cancelled`] ends the job: it does no piece that it has not begun, leaves no half-written file, and returns an
-    /// error that says so.
+    /// [`Cancelled`] ends the job: the job begins no other piece, leaves no half-written file, and returns an error
+    /// that says that it was cancelled.
     fn advance(&self, pieces: usize) -> Result<(), Cancelled>;
 }
 
@@ -26,7 +27,7 @@ impl Progress for () {
     }
 }
 
-/// The caller of a job has ended it.
+/// The caller of a job has cancelled it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("cancelled")]
 pub struct Cancelled;

@@ -1,4 +1,4 @@
-//! What is known of pictures that have been drawn, and why there may be none.
+//! The facts about drawn pictures, and the errors of drawing.
 
 use glam::DVec3;
 use thiserror::Error;
@@ -11,14 +11,14 @@ use crate::pipeline::PlacedSceneError;
 use crate::render::CameraError;
 use crate::write::WriteError;
 
-/// Why there are no pictures, or not all of them.
+/// Reasons why there are no pictures, or not all of them.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// No camera frames what there is to be seen.
+    /// No camera has all objects in the picture.
     #[error(transparent)]
     Framing(#[from] FramingError),
-    /// A sheet of too many pixels.
+    /// A sheet has too many pixels.
     #[error("a sheet of {steps} steps side by side")]
     Sheet {
         /// Number of steps.
@@ -29,10 +29,10 @@ pub enum RenderError {
     /// There are no photosurfaces.
     #[error(transparent)]
     PlacedScene(#[from] PlacedSceneError),
-    /// A file that must not, or cannot, be written.
+    /// A file must not or cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// The caller has ended the job.
+    /// The caller has cancelled the job.
     #[error("cancelled")]
     Cancelled,
 }
@@ -52,28 +52,29 @@ impl From<WriteError> for RenderError {
     }
 }
 
-/// What is to be said of pictures that have been drawn.
+/// The facts about the pictures that have been drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rendered {
-    /// The photosurfaces in the pictures, in sum, each counted once; none where all was drawn by rays.
+    /// Totals of the photosurfaces in the pictures, each counted once; zero if all views were drawn by rays.
     pub tally: Tally,
     /// The observer's views that show nothing but the background.
     pub empty: Vec<EmptyView>,
-    /// The cost of each view, in the order in which they were drawn; a sheet has two of each step.
+    /// The cost of each view, in the order in which they were drawn; a sheet has two views for each step.
     pub costs: Vec<ViewCost>,
 }
 
-/// A view of the observer that shows nothing but the background: everything is in another direction, or smaller than a
-/// pixel.
+/// A view of the observer that shows only the background, because every object is in another direction or smaller than
+/// a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmptyView {
     /// The step, counted from 0.
     pub step: usize,
-    /// The direction to the middle of the sky that everything takes up at that step: a unit vector in the observer's frame.
+    /// The direction to the middle of the part of the sky that the objects cover at that step: a unit vector in the
+    /// observer's frame.
     pub look: DVec3,
 }
 
-/// What one view has cost.
+/// The cost of one view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewCost {
     /// Number of rays that start at the camera.

@@ -9,8 +9,8 @@ use super::views::Views;
 use crate::render::Picture;
 use crate::shape::Color;
 
-/// For each step what the observer sees and, below, the photosurface from outside, framed by a camera at one distance or
-/// at the place `from`.
+/// Draws for each step the observer's view and, below it, the photosurface from outside. The cameras outside all have
+/// the same distance, or the position `from`.
 pub(super) fn draw_sheet(views: &mut Views, from: Option<DVec3>) -> Result<Picture, RenderError> {
     let (scene, settings) = (views.placed.scene(), views.settings);
     let (size, background) = (settings.camera.size, settings.background);

@@ -1,17 +1,18 @@
-//! What a job has made, in sum.
+//! Totals of the photosurfaces that a job has made.
 
 use crate::pipeline::Facts;
 
-/// What a job has made, in sum: how much, and how far it is from its tolerances.
+/// Totals of the photosurfaces that a job has made: their number, their triangles, and whether they are within their
+/// tolerances.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tally {
-    /// How many photosurfaces.
+    /// Number of photosurfaces.
     pub photosurfaces: usize,
-    /// Their triangles, as files have them: where all steps share one mesh, they count once.
+    /// Number of triangles in files: a mesh that all steps share counts once.
     pub triangles: usize,
-    /// How many photosurfaces are not proven to be within their tolerances.
+    /// Number of photosurfaces that are not proven to be within their tolerances.
     pub uncertified: usize,
-    /// The photosurface, of those, whose proven bound is the largest multiple of its tolerance.
+    /// Among these, the photosurface with the largest ratio of its proven bound to its tolerance.
     pub worst: Option<Facts>,
 }
 
@@ -21,7 +22,7 @@ impl Tally {
         self.uncertified == 0
     }
 
-    /// Counts one photosurface more, and so many triangles.
+    /// Adds one photosurface with `triangles` triangles.
     pub(super) fn add(&mut self, facts: &Facts, triangles: usize) {
         self.photosurfaces += 1;
         self.triangles += triangles;
@@ -30,7 +31,7 @@ impl Tally {
         }
         self.uncertified += 1;
         let excess = |facts: &Facts| facts.certificate.total / facts.certificate.tolerance;
-        // Written so that NaN is worse than anything.
+        // Written so that NaN counts as the worst.
         let better = |worst: &Facts| excess(facts) <= excess(worst);
         if !self.worst.as_ref().is_some_and(better) {
             self.worst = Some(facts.clone());

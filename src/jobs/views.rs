@@ -14,10 +14,10 @@ use crate::pipeline::{PlacedScene, PlacedSceneError};
 use crate::render::{Camera, Picture, PictureOptions, Scenery, Strokes, Textures, Viewpoint};
 use crate::shape::Color;
 
-/// The colour of wires: it shows on light and on dark surfaces.
+/// The colour of wires, visible on light and on dark surfaces.
 const WIRE: Color = Color([0x2c, 0x3e, 0x50]);
 
-/// A placed scene, how views of it are drawn, and what there is to be said of those that have been.
+/// A placed scene, the settings for drawing views of it, and the facts about the views drawn so far.
 pub(super) struct Views<'a> {
     pub(super) placed: &'a PlacedScene,
     pub(super) settings: &'a PictureSettings,
@@ -54,13 +54,13 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// Vertical field of view of the observer at all steps, in degrees.
+    /// Vertical field of view of the observer's camera, in degrees, the same at all steps.
     pub(super) fn observer_fov_deg(&self) -> Result<f64, RenderError> {
         let places = self.steps().map(|step| self.seen_vertices(step));
         self.settings.camera.observer_fov_deg(places)
     }
 
-    /// A camera outside that has everything at every step in the picture, or is at the place `from`.
+    /// A camera outside that has everything at every step in the picture, or stands at the position `from`.
     pub(super) fn outside_camera(&self, from: Option<DVec3>) -> Result<OutsideCamera, RenderError> {
         let mut all = Vec::new();
         for step in self.steps() {
@@ -77,7 +77,7 @@ impl<'a> Views<'a> {
         Ok(cameras[0])
     }
 
-    /// A camera outside for each step, all at one distance, or at the place `from`.
+    /// A camera outside for each step; all have the same distance, or stand at the position `from`.
     pub(super) fn outside_cameras(
         &self,
         from: Option<DVec3>,
@@ -86,7 +86,7 @@ impl<'a> Views<'a> {
         Ok(self.settings.camera.outside_cameras(from, &framed?)?)
     }
 
-    /// What the observer sees at one step, with a vertical field of view in degrees.
+    /// The observer's view at one step, with a vertical field of view in degrees.
     pub(super) fn observer(&mut self, step: usize, fov_deg: f64) -> Result<Picture, RenderError> {
         let places = self.seen_vertices(step)?;
         let camera = self.settings.camera.observer_camera(fov_deg, &places)?;
@@ -144,13 +144,14 @@ impl<'a> Views<'a> {
         0..self.placed.scene().steps().len()
     }
 
-    /// The places of the given vertices at one step, in the observer's frame; an error if the job has been ended.
+    /// The seen positions of the source vertices at one step, in the observer's frame; an error if the job has been
+    /// cancelled.
     fn seen_vertices(&self, step: usize) -> Result<Vec<DVec3>, RenderError> {
         self.progress.advance(0)?;
         Ok(seen_vertices(self.placed, step)?)
     }
 
-    /// The places that a camera outside has to have in the picture at one step.
+    /// The positions, in the observer's frame, that a camera outside has to have in the picture at one step.
     fn framed(&self, step: usize) -> Result<Vec<DVec3>, RenderError> {
         let mut places = self.seen_vertices(step)?;
         for (mesh, _) in self.settings.guides.ghosts(self.placed, step) {
@@ -162,12 +163,12 @@ impl<'a> Views<'a> {
     fn add_photosurfaces(&mut self, scenery: &mut Scenery, step: usize) -> Result<(), RenderError> {
         let placed = self.placed;
         let mut objects = placed.scene().objects().iter().peekable();
-        // On a sheet by meshes each is in two pictures.
+        // On a sheet drawn by meshes each photosurface is in two views.
         let is_new = step >= self.next_step;
         self.next_step = self.next_step.max(step + 1);
         for surface in placed.photosurfaces(step, self.settings.surface_options)? {
             self.progress.advance(0)?;
-            // Both are in the order of the scene, in which no two objects have one name.
+            // Objects and photosurfaces are both in the order of the scene, in which no two objects have the same name.
             while objects
                 .next_if(|object| object.name != surface.facts.object)
                 .is_some()

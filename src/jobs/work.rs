@@ -1,4 +1,4 @@
-//! Photosurfaces made and written one after the other, in any format.
+//! Makes photosurfaces and writes them one after the other, in any format.
 
 use std::io::Write;
 use std::ops::Range;
@@ -13,7 +13,7 @@ use crate::write::{
     write_whole, write_whole_gltf, write_whole_target,
 };
 
-/// Photosurfaces in the making, and what has been made of them so far.
+/// An export at work: its settings, and the totals and facts of the photosurfaces made so far.
 pub(super) struct Work<'a> {
     pub(super) placed: &'a PlacedScene,
     pub(super) wanted: SurfaceOptions,
@@ -22,9 +22,9 @@ pub(super) struct Work<'a> {
     pub(super) progress: &'a dyn Progress,
     pub(super) clock: Clock,
     pub(super) tally: Tally,
-    /// Of every photosurface, if they are to be kept.
+    /// The facts about every photosurface, if they are to be kept.
     pub(super) facts: Option<Vec<Facts>>,
-    /// Files beside a `.gltf`.
+    /// Data files that belong to `.gltf` files.
     pub(super) data_files: Vec<PathBuf>,
 }
 
@@ -34,7 +34,7 @@ impl Work<'_> {
     }
 
     fn count(&mut self, facts: &Facts) -> Result<(), WriteError> {
-        // Where all steps are one mesh, its triangles are there once.
+        // If all steps share one mesh, its triangles count once.
         let first = facts.step == 0 || !self.is_morphing();
         self.tally
             .add(facts, if first { facts.triangles } else { 0 });
@@ -45,7 +45,8 @@ impl Work<'_> {
         told.map_err(|Cancelled| WriteError::Cancelled)
     }
 
-    /// Makes the photosurfaces of some steps and puts each into the file, so that memory does not grow with them.
+    /// Makes the photosurfaces of some steps and writes each to the file at once, so that memory does not grow with
+    /// their number.
     fn fill(&mut self, file: &mut GltfFile<'_>, steps: Range<usize>) -> Result<(), WriteError> {
         let (placed, wanted) = (self.placed, self.wanted);
         if self.is_morphing() {
@@ -66,7 +67,7 @@ impl Work<'_> {
         })
     }
 
-    /// A GLB or both parts of a `.gltf`.
+    /// Writes a GLB or both files of a `.gltf`.
     fn gltf(&mut self, steps: Range<usize>, output: GltfOutput<'_>) -> Result<(), WriteError> {
         let (scene, attributes) = (self.placed.facts(), self.wanted.attributes);
         let marker = self.placed.marker();
@@ -83,7 +84,7 @@ impl Work<'_> {
         self.gltf(steps, GltfOutput::glb(target, meshes + 1))
     }
 
-    /// All at once: the format says first how many vertices there are.
+    /// Writes a PLY after all its photosurfaces are made, because the format starts with the number of vertices.
     fn ply(&mut self, steps: Range<usize>, out: &mut dyn Write) -> Result<(), WriteError> {
         let (placed, wanted) = (self.placed, self.wanted);
         let mut photosurfaces = vec![];
@@ -105,7 +106,7 @@ impl Work<'_> {
         Ok(out.flush()?)
     }
 
-    /// Writes a file of some steps, and does what is left to do when all of it is written and it is about to appear.
+    /// Writes a file of some steps. `before_it_appears` is called when the whole file is written and about to appear.
     pub(super) fn write_file(
         &mut self,
         path: &Path,
@@ -132,7 +133,7 @@ impl Work<'_> {
         }
     }
 
-    /// Writes some steps to a stream: a `.ply`, else a GLB.
+    /// Writes some steps to a stream, as a PLY if that is the format, otherwise as a GLB.
     pub(super) fn write_stream(
         &mut self,
         out: &mut dyn Write,
@@ -144,7 +145,7 @@ impl Work<'_> {
         }
     }
 
-    /// What has been made so far, and how long it took.
+    /// The report of everything made so far, with the times of the stages.
     pub(super) fn report(&self) -> Report {
         Report {
             scene: self.placed.facts(),
@@ -153,7 +154,7 @@ impl Work<'_> {
         }
     }
 
-    /// What has been made, and how long it took.
+    /// The report of everything made, with the times of the stages.
     pub(super) fn into_report(self) -> Report {
         Report {
             scene: self.placed.facts(),

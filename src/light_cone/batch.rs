@@ -1,8 +1,9 @@
-//! Many points seen at once, several in one instruction where the processor has such.
+//! The photosurface map for many points at once, several in one instruction where the processor has vector
+//! instructions.
 //!
-//! `pulp` finds out what there is when the program runs. A block of points that are all neither tiny nor huge goes
-//! through the map without a branch, any other one through the map for single points, point by point: the results are
-//! the same, bit for bit, either way.
+//! `pulp` detects the vector instructions at run time. A block whose points are all in the safe range (neither tiny nor
+//! huge) goes through the map without branches. Any other block goes through the map for single points, point by point.
+//! The results are the same, bit for bit, in both ways.
 
 use glam::DVec3;
 use pulp::{Arch, NullaryFnOnce};
@@ -13,22 +14,22 @@ use super::{Extremes, View};
 use crate::spacetime::exact::{Fused, Product, Split};
 use crate::spacetime::length;
 
-/// Points at rest to be seen, and where to put what is seen of them.
+/// Points in the rest frame, with slices for their positions and normals in the observer's frame.
 pub(crate) struct Batch<'a> {
     pub(crate) rest: &'a [DVec3],
-    /// As many.
+    /// Where each point is seen, in the observer's frame; as many as there are points at rest.
     pub(crate) seen: &'a mut [DVec3],
-    /// Normals at rest, each of unit length or zero, and as seen.
+    /// Normals in the rest frame, each of unit length or zero, and a slice for the normals in the observer's frame.
     pub(crate) normals: Option<(&'a [DVec3], &'a mut [DVec3])>,
 }
 
 impl View {
-    /// Sees all points of a batch: as [`View::seen_position`] and [`View::seen_normal`] do each, bit for bit if no
-    /// coordinate is so small, other than zero, that digits of its products vanish (below `1e-250`).
+    /// Maps all points of a batch. The results equal those of [`View::seen_position`] and [`View::seen_normal`], bit
+    /// for bit, unless a coordinate other than zero is below `1e-250`, where products lose digits.
     ///
     /// # Panics
     ///
-    /// If the parts of the batch are not of one length.
+    /// If the slices of the batch do not have the same length.
     pub(crate) fn see(&self, batch: Batch<'_>) -> Extremes {
         assert_eq!(batch.rest.len(), batch.seen.len(), "a place for each point");
         if let Some((rest, seen)) = &batch.normals {
@@ -42,16 +43,17 @@ impl View {
         self.see_by_blocks::<true>(batch)
     }
 
-    /// Where all points of `positions_rest` are seen, in the observer's frame: as [`View::seen_position`] of each, in a
-    /// fraction of the time (`cargo bench --bench bandwidth`).
+    /// Writes to `seen` where all points of `positions_rest` are seen, in the observer's frame. It does the same as
+    /// [`View::seen_position`] for each point, in a fraction of the time (`cargo bench --bench bandwidth`).
     ///
     /// # Accuracy
     ///
-    /// The same, bit for bit, but for points with a coordinate other than zero below `1e-250`.
+    /// The results equal those of [`View::seen_position`], bit for bit, except for points with a coordinate other than
+    /// zero below `1e-250`.
     ///
     /// # Panics
     ///
-    /// If there are not as many places in `seen` as points, as [`slice::copy_from_slice`] does.
+    /// If `seen` and `positions_rest` do not have the same length, as in [`slice::copy_from_slice`].
     pub fn seen_positions(&self, positions_rest: &[DVec3], seen: &mut [DVec3]) {
         assert_eq!(positions_rest.len(), seen.len(), "a place for each point");
         self.see_by_blocks::<false>(Batch {
@@ -61,7 +63,7 @@ impl View {
         });
     }
 
-    /// Without `ALL` the positions alone, and no extremes.
+    /// Without `ALL` only the positions are computed, and no extremes.
     fn see_by_blocks<const ALL: bool>(&self, batch: Batch<'_>) -> Extremes {
         let Some(safe_map) = self.map().safe_range_map() else {
             return self.see_one_by_one(batch);
@@ -72,7 +74,7 @@ impl View {
             batch,
         };
         match Arch::new() {
-            // Without instructions of its own a fused product is a call.
+            // A processor without fused multiply-add instructions would call a function for each fused product.
             Arch::Scalar => blocks.run::<Split>(),
             arch => arch.dispatch(blocks),
         }
@@ -155,14 +157,14 @@ impl<const ALL: bool> Blocks<'_, ALL> {
     }
 }
 
-/// A whole block: the last vector again and again, which changes nothing that all have in common.
+/// A whole block, filled up with copies of the last vector. The copies do not change the extremes.
 fn padded(vectors: &[DVec3]) -> [DVec3; BLOCK] {
     let mut block = [vectors.last().copied().unwrap_or_default(); BLOCK];
     block[..vectors.len()].copy_from_slice(vectors);
     block
 }
 
-/// Blocks on their way, and what was found so far.
+/// A block being mapped, and the extremes of the points so far.
 struct Work<'a, const ALL: bool> {
     view: &'a View,
     safe_map: &'a SafeRangeMap,
@@ -219,7 +221,8 @@ mod tests {
         )
     }
 
-    /// Points in all directions, also all but ahead of and behind the observer, some tiny, huge or none.
+    /// Points in all directions, some almost exactly ahead of or behind the observer. With `odd` some are tiny, huge,
+    /// at the observer or not finite.
     fn points(count: usize, odd: bool, view: &View) -> Vec<DVec3> {
         let along = view.relative_velocity().direction();
         let point = |index: usize| {
@@ -254,7 +257,8 @@ mod tests {
     fn all_at_once_or_one_by_one_is_the_same_bit_for_bit() {
         for rapidity in [0.0, 1e-9, 0.5, 3.0, 20.0, 100.0, 300.0] {
             for odd in [false, true] {
-                // Also a block that is not full, and no point at all; the last number is enough for all odd ones.
+                // The counts include an incomplete block and no point at all; the last count is large enough for all
+                // kinds of odd points.
                 for count in [0, 1, BLOCK, 600 + BLOCK / 2 + 1] {
                     let view = view(rapidity, DVec3::new(0.1, 0.2, 0.3));
                     let rest = points(count, odd, &view);

@@ -1,4 +1,4 @@
-//! A block of points coordinate by coordinate, in loops of which the compiler makes vectors.
+//! A block of points, stored coordinate by coordinate, so that the compiler can use vector instructions for the loops.
 
 use glam::DVec3;
 
@@ -6,8 +6,8 @@ use super::safe_range::{SafeRangeMap, SeenPoint, forwardness, is_in_safe_range, 
 use super::{Extremes, View};
 use crate::spacetime::exact::Product;
 
-/// Points that are taken at a time: enough for the longest vectors, few enough that reading the next ones and computing
-/// overlap.
+/// Number of points in a block: enough for the longest vector registers, and few enough that reading the next points
+/// overlaps with the computation.
 pub(super) const BLOCK: usize = 32;
 
 /// A number for each point of a block.
@@ -58,7 +58,8 @@ impl Columns {
     }
 }
 
-/// How the points of a block are seen. One for all blocks, as to clear it takes time too.
+/// The points of a block, at rest and as the observer sees them. One instance serves for all blocks, because clearing a
+/// new one would take time.
 pub(super) struct Block {
     rest: Columns,
     pub(super) position: Columns,
@@ -68,7 +69,7 @@ pub(super) struct Block {
     across: Columns,
     distance_at_rest: Numbers,
     square_rest: Numbers,
-    /// Of the offsets.
+    /// Size of each point's offset from the observer, by [`size`].
     size: Numbers,
 }
 
@@ -85,7 +86,7 @@ impl Block {
         size: [0.0; BLOCK],
     };
 
-    /// Without `ALL` the positions alone.
+    /// Maps the points of a block; without `ALL` only their positions.
     #[inline(always)]
     pub(super) fn see<P: Product, const ALL: bool>(
         &mut self,
@@ -111,7 +112,7 @@ impl Block {
         }
     }
 
-    /// Whether no point is tiny or huge; else all the rest means nothing.
+    /// Whether no point is tiny or huge; if one is, the other results have no meaning.
     #[inline(always)]
     pub(super) fn is_in_safe_range(&self) -> bool {
         let mut others = 0;
@@ -121,7 +122,7 @@ impl Block {
         others == 0
     }
 
-    /// The normals there of a surface with these at rest.
+    /// The normals in the observer's frame at the points of the block, from the normals `rest` in the rest frame.
     #[inline(always)]
     pub(super) fn see_normals(
         &mut self,
@@ -145,7 +146,7 @@ impl Block {
     }
 }
 
-/// The extremes of blocks, of each place in them by itself.
+/// The extremes over all blocks, separately for each index in a block.
 pub(super) struct Accumulated {
     low: Columns,
     high: Columns,

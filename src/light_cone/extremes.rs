@@ -1,24 +1,26 @@
-//! What all points of a mesh have in common.
+//! The largest and smallest values of a few quantities over all points of a mesh.
 
 use glam::DVec3;
 
-/// What all points of a mesh have in common, at rest and as seen.
+/// The largest and smallest values of a few quantities over all points of a mesh, at rest and as the observer sees
+/// them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Extremes {
-    /// The box around all places where they are seen; upside down where there are none.
+    /// The corners of the box around all seen positions, in the observer's frame; `low` is above `high` if there are no
+    /// points.
     pub(crate) low: DVec3,
     pub(crate) high: DVec3,
-    /// The distances at which the nearest and the farthest are seen.
+    /// The distances, in the observer's frame, at which the nearest and the farthest point are seen.
     pub(crate) nearest: f64,
     pub(crate) farthest: f64,
-    /// The largest distance from the origin of the rest frame.
+    /// The largest distance of a point from the origin of the rest frame.
     pub(crate) farthest_rest: f64,
-    /// The largest: see [`View::stretch_toward`].
+    /// The largest [`View::forwardness`](super::View::forwardness) of a point.
     pub(crate) forwardness: f64,
 }
 
 impl Extremes {
-    /// Of no points.
+    /// The extremes of no points.
     pub(crate) const NONE: Self = Self {
         low: DVec3::INFINITY,
         high: DVec3::NEG_INFINITY,
@@ -28,7 +30,7 @@ impl Extremes {
         forwardness: 0.0,
     };
 
-    /// Of the points of both.
+    /// The extremes of the points of both together.
     #[must_use]
     pub(crate) fn and(self, other: Self) -> Self {
         Self {
@@ -41,9 +43,9 @@ impl Extremes {
         }
     }
 
-    /// The box around what is seen; `None` where nothing is.
+    /// The lowest and the highest corner of the box around all seen positions; `None` if there are no points.
     pub(crate) fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        // Of places beyond f64 there is one, too.
+        // Positions beyond `f64` have a box, too.
         (self.nearest <= self.farthest || self.farthest > 0.0).then_some((self.low, self.high))
     }
 }

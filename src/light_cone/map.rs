@@ -1,12 +1,12 @@
-//! The photosurface map: where a point at rest is seen by one moving observer.
+//! The photosurface map: where one moving observer sees a point at rest.
 //!
-//! Everything here is written in two frames. In the *rest frame* of the object, `offset` is a point
-//! minus the observer's position at the moment of observation. The *observer's frame* has the
-//! observer at its origin and axes that are related to those of the rest frame by a pure boost.
+//! This file uses two frames. In the *rest frame* of the object, `offset` is the vector from the observer's position at
+//! the moment of observation to the point. The *observer's frame* has the observer at its origin and axes that a pure
+//! boost makes from those of the rest frame.
 //!
-//! In the light-cone coordinates `u = r - d_par`, `w = r + d_par` along the direction of motion the map
-//! only multiplies, by `exp(-eta)` and `exp(eta)`; all results are written in terms of them because
-//! there nothing cancels near light speed.
+//! Let `d` be the offset, `r` its length, `d_par` its component along the direction of motion, and `eta` the observer's
+//! rapidity. The map only multiplies the light-cone coordinates `u = r - d_par` and `w = r + d_par`, by `exp(-eta)` and
+//! `exp(eta)`. All results are computed from `u` and `w`, because nothing cancels in them near the speed of light.
 //!
 //! Sources: Rau, Weiskopf, Ruder, *Special Relativity in Virtual Reality* (1998), sections 3.1 and 4.1
 //! (their Eq. (7) with the opposite sign of beta); Terrell, Phys. Rev. 116 (1959), 1041.
@@ -19,10 +19,11 @@ use super::safe_range::{SafeRangeMap, is_in_safe_range, size};
 use crate::spacetime::exact::Split;
 use crate::spacetime::{Velocity, exact, harmless_scale, heading, length, unit};
 
-/// The map from points at rest to the places where one moving observer sees them.
+/// The map from points in the rest frame to the positions, in the observer's frame, where one moving observer sees
+/// them.
 ///
-/// Homogeneous of degree 1, one-to-one, linear along every ray from the observer, smooth except at the
-/// observer itself. An offset that is not finite gives results that are not finite, and never a panic.
+/// The map is homogeneous of degree 1, one-to-one, linear along every ray from the observer, and smooth except at the
+/// observer. An offset that is not finite gives results that are not finite, and never a panic.
 ///
 /// # Example
 ///
@@ -38,9 +39,9 @@ use crate::spacetime::{Velocity, exact, harmless_scale, heading, length, unit};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhotosurfaceMap {
-    /// Direction in which the observer moves through the rest frame.
+    /// Unit vector along which the observer moves through the rest frame, rounded.
     direction: DVec3,
-    /// The same as it was given, of any length: `direction` is rounded.
+    /// The same direction as the caller gave it, of any length and not rounded.
     heading: DVec3,
     heading_length: f64,
     /// `exp(eta)`
@@ -49,23 +50,23 @@ pub struct PhotosurfaceMap {
     squeeze: f64,
     gamma: f64,
     gamma_beta: f64,
-    /// For points that are neither tiny nor huge.
+    /// The map for points that are neither tiny nor huge.
     safe_map: Option<SafeRangeMap>,
 }
 
-/// Offsets larger than this are divided by [`BACK`], lest their squares and sums overflow.
+/// Offsets larger than this are divided by [`BACK`], because their squares and sums might overflow.
 const HUGE: f64 = 1e140;
 const BACK: f64 = f64::from_bits((1023 + 600) << 52);
 
 /// An offset in light-cone coordinates along the direction of motion, `u = r - d_par` and `w = r + d_par`.
 struct LightCone {
-    /// The part across the direction of motion, and its length.
+    /// The part of the offset across the direction of motion, and the length of this part.
     across: DVec3,
     distance_across: f64,
-    /// Whether it is ahead of the observer: then `w` is the larger of the two.
+    /// Whether the point is ahead of the observer; then `w` is the larger of the two coordinates.
     ahead: bool,
     larger: f64,
-    /// What the distance across has to be multiplied by to give the smaller one.
+    /// The smaller coordinate divided by `distance_across`.
     ratio: f64,
 }
 
@@ -84,19 +85,21 @@ impl LightCone {
         if larger {
             factor * self.larger
         } else {
-            // Not the product first: 1e152 ahead and 1 aside `u` is 1e-152, and seen from twice as fast it vanishes.
+            // The product `ratio * distance_across` is `u` and must not be computed first, because it may underflow:
+            // for a point 1e152 ahead and 1 aside `u` is 1e-152, and for an observer at rapidity 700, twice the largest
+            // that may be given, the seen `u` underflows.
             (factor * self.ratio) * self.distance_across
         }
     }
 
-    /// The distance at rest.
+    /// The distance from the observer in the rest frame.
     fn distance(&self) -> f64 {
         0.5 * self.larger + 0.5 * self.times(1.0, false)
     }
 }
 
 impl PhotosurfaceMap {
-    /// The map for an observer who moves with velocity `observer` through the rest frame.
+    /// The map for an observer who moves with the velocity `observer` in the rest frame.
     pub fn new(observer: &Velocity) -> Self {
         Self {
             direction: observer.direction(),
@@ -110,26 +113,27 @@ impl PhotosurfaceMap {
         }
     }
 
-    /// The map without a branch, where the velocity allows that: the same results, bit for bit, for all points that are
-    /// neither tiny nor huge.
+    /// The map without branches, if the velocity allows it. The results are the same, bit for bit, for all points that
+    /// are neither tiny nor huge.
     pub(super) fn safe_range_map(&self) -> Option<&SafeRangeMap> {
         self.safe_map.as_ref()
     }
 
-    /// The place, in the observer's frame, where a point is seen: that of the emission event.
+    /// Where a point is seen: the position of the emission event in the observer's frame.
     ///
     /// # Derivation
     ///
-    /// Light seen now left the point a time `r = |d|` ago, at the event `(-r, d)`. In the light-cone
-    /// coordinates `(r - d_par, r + d_par)` the boost only multiplies, by `exp(-eta)` and `exp(eta)`.
+    /// In the rest frame the light seen now left the point a time `r = |d|` ago, at the event `(-r, d)`. The boost to
+    /// the observer's frame only multiplies the light-cone coordinates `(r - d_par, r + d_par)` by `exp(-eta)` and
+    /// `exp(eta)`.
     ///
     /// # Accuracy
     ///
-    /// At most 8 units in the last place of `|result|`, in any direction and at any rapidity, also straight behind
-    /// and next to it, where all but `exp(-2 eta)` of a distance cancels (measured: 2.8 in
-    /// `tests/it/physics/accuracy.rs` and `tests/it/physics/hard_cases.rs`). The direction of motion counts as it was
-    /// given, brought to unit length exactly. Continuous everywhere; the observer's own place maps to zero. Beyond what
-    /// `f64` holds a coordinate becomes infinite, never NaN.
+    /// The error is at most 8 units in the last place of `|result|`, in any direction and at any rapidity, also
+    /// straight behind the observer and near that direction, where all but `exp(-2 eta)` of a distance cancels
+    /// (measured: 2.8 in `tests/it/physics/accuracy.rs` and `tests/it/physics/hard_cases.rs`). The error is relative to
+    /// a direction of motion as the caller gave it, brought to unit length exactly. The map is continuous everywhere
+    /// and sends the observer's position to zero. A coordinate beyond `f64` becomes infinite, never NaN.
     ///
     /// # Reference
     ///
@@ -141,14 +145,14 @@ impl PhotosurfaceMap {
         }
     }
 
-    /// The point at rest, relative to the observer, that is seen at `seen`: the inverse of
-    /// [`PhotosurfaceMap::seen_position`].
+    /// The offset, in the rest frame, of the point that is seen at the position `seen` in the observer's frame: the
+    /// inverse of [`PhotosurfaceMap::seen_position`].
     pub fn rest_offset(&self, seen: DVec3) -> DVec3 {
         self.map(seen, self.stretch, self.squeeze)
     }
 
-    /// The map without a branch, an offset brought by a power of two to where it holds, and the power that makes up for
-    /// that; `None` where velocity or offset are none for it.
+    /// The map without branches, the offset divided by a power of two that brings it into the safe range, and that
+    /// power; `None` if the velocity or the offset does not allow it.
     fn scaled_to_safe_range(&self, offset: DVec3) -> Option<(&SafeRangeMap, DVec3, f64)> {
         let safe_map = self.safe_map.as_ref()?;
         if is_in_safe_range(size(offset)) {
@@ -162,27 +166,28 @@ impl PhotosurfaceMap {
 
     fn map(&self, offset: DVec3, factor_u: f64, factor_w: f64) -> DVec3 {
         if factor_u == factor_w {
-            // At rest everything is where it is, to the last bit.
+            // For an observer at rest a point is seen exactly where it is, to the last bit.
             return offset;
         }
         let (cone, back) = self.light_cone(offset);
         let along = 0.5 * (cone.w_times(factor_w) - cone.u_times(factor_u));
-        // What is beyond f64 overflows to infinity, not to the NaN of zero times infinity.
+        // A result beyond f64 has to overflow to infinity, not to the NaN of zero times infinity.
         let along = along.clamp(f64::MIN, f64::MAX);
         (cone.across + self.direction * along) * back
     }
 
-    /// The time of the emission event in the observer's frame, minus the distance at which the point
-    /// is seen. Zero at the observer, else negative.
+    /// The time of the emission event in the observer's frame, counted from the observation. It equals the distance at
+    /// which the point is seen, with a minus sign: zero at the observer, negative elsewhere.
     pub fn emission_time(&self, offset_rest: DVec3) -> f64 {
         let (cone, back) = self.light_cone(offset_rest);
         -0.5 * (cone.w_times(self.stretch) + cone.u_times(self.squeeze)) * back
     }
 
-    /// Frequency seen over frequency emitted, `D = gamma (1 + beta cos)`.
+    /// The Doppler factor, the frequency seen divided by the frequency emitted: `D = gamma (1 + beta cos)`, with the
+    /// cosine of the angle between the offset and the direction of motion, in the rest frame.
     ///
-    /// It is also `|seen_position| / |offset|` and the determinant of [`PhotosurfaceMap::jacobian`]. At
-    /// the observer itself, where it depends on the direction, its mean over all directions: `gamma`.
+    /// It is also `|seen_position| / |offset|` and the determinant of [`PhotosurfaceMap::jacobian`]. At the observer,
+    /// where it depends on the direction, the result is its mean over all directions, `gamma`.
     pub fn doppler_factor(&self, offset_rest: DVec3) -> f64 {
         let (cone, _) = self.light_cone(offset_rest);
         if cone.larger == 0.0 {
@@ -191,13 +196,14 @@ impl PhotosurfaceMap {
         self.doppler_factor_of(&cone)
     }
 
-    /// The derivative of [`PhotosurfaceMap::seen_position`]: `I + n a^T`,
-    /// `a = (gamma - 1) n + gamma beta d / r`.
+    /// The derivative of [`PhotosurfaceMap::seen_position`]: the matrix `I + n a^T` with the direction of motion `n`
+    /// and `a = (gamma - 1) n + gamma beta d / r`.
     ///
-    /// Evaluated as `(I - n n^T) + n (D n + gamma beta d_across / r)^T`: behind the observer `a` all but
-    /// cancels against `-n`, the Doppler factor `D` keeps what is left.
+    /// It is computed as `(I - n n^T) + n (D n + gamma beta d_across / r)^T`. Behind the observer `n + a` cancels
+    /// almost completely; the Doppler factor `D` preserves the digits of the remainder.
     ///
-    /// At the observer itself, where there is none, that of the boost alone (`d / r` taken as 0).
+    /// At the observer, where the map has no derivative, the result is the matrix of the boost alone (`d / r` is set to
+    /// 0).
     pub fn jacobian(&self, offset_rest: DVec3) -> DMat3 {
         let n = self.direction;
         let (toward_across, doppler_factor) = self.toward_across(offset_rest);
@@ -206,18 +212,18 @@ impl PhotosurfaceMap {
         DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))
     }
 
-    /// A bound of how much the map stretches anything in the ball of `radius` about `offset_rest`: of the
-    /// largest singular value of [`PhotosurfaceMap::jacobian`] there, so also of
-    /// `|seen_position(a) - seen_position(b)| / |a - b|` for any two points of the ball.
+    /// An upper bound on how many times the map stretches lengths in the ball of `radius` around `offset_rest`, both in
+    /// the rest frame. It bounds the largest singular value of [`PhotosurfaceMap::jacobian`] in the ball, and therefore
+    /// `|seen_position(a) - seen_position(b)| / |a - b|` for any two points `a` and `b` of the ball.
     ///
-    /// At least 1, which it is straight behind the observer, and at most `exp(eta)`, which it is straight ahead
-    /// and for balls that reach the observer.
+    /// The bound lies between 1, its value straight behind the observer, and `exp(eta)`, its value straight ahead and
+    /// for balls that reach the observer.
     ///
     /// # Derivation
     ///
-    /// Two singular values have the product `D`, the determinant, and the squares' sum `T` of the block
-    /// along and across the motion; the third is 1. At the angle `theta` from the direction of motion,
-    /// with `C = cos(theta/2)`, `S = sin(theta/2)` and `E = exp(eta)`,
+    /// One singular value is 1. The other two belong to the plane of `n` and `d`: their product is the determinant `D`,
+    /// and the sum of their squares is `T`. At the angle `theta` from the direction of motion, with `C = cos(theta/2)`,
+    /// `S = sin(theta/2)` and `E = exp(eta)`,
     ///
     /// ```text
     /// D = C^2 E + S^2 / E        T = C^2 E^2 + S^2 / E^2 + 1
@@ -225,26 +231,26 @@ impl PhotosurfaceMap {
     /// T - 2 D = C^2 (E - 1)^2 + S^2 (1 - 1/E)^2
     /// ```
     ///
-    /// and the larger one is half the sum of the roots of the last two, in which nothing cancels. Both grow
-    /// with `C`, so the place of the ball at the smallest angle, `theta - asin(radius / distance)`, has the
-    /// largest. A ball is convex, so that the mean value theorem holds on it.
+    /// The larger singular value is half the sum of the square roots of `T + 2 D` and `T - 2 D`, in which nothing
+    /// cancels. Both grow with `C`, so the largest value in the ball occurs at the smallest angle,
+    /// `theta - asin(radius / distance)`. A ball is convex, so the mean value theorem holds in it.
     ///
     /// # Accuracy
     ///
-    /// Rounded up, and by at most 40 epsilon, at any rapidity (`tests/it/physics/accuracy.rs`). NaN and negative radii
-    /// get the bound that holds everywhere.
+    /// The bound is rounded up by at most 40 epsilon, relatively, at any rapidity (`tests/it/physics/accuracy.rs`). For
+    /// a radius that is NaN or negative, the result is the bound that holds everywhere.
     pub fn stretch_bound(&self, offset_rest: DVec3, radius: f64) -> f64 {
         let everywhere = self.stretch * (1.0 + 4.0 * f64::EPSILON);
         let n = self.direction;
-        // Only ratios count; powers of two lose no digits.
+        // Only ratios matter, and scaling by a power of two loses no digits.
         let scale = harmless_scale(offset_rest);
         let offset = offset_rest * scale;
         let (cone, _) = self.light_cone(offset);
-        // Angles from straight behind, where the small ones are: no digits are lost there.
+        // The angle is measured from straight behind, because the small angles occur there: they lose no digits.
         let from_behind = cone.distance_across.atan2(-n.dot(offset)) * (1.0 + 16.0 * f64::EPSILON);
         let sine = radius * scale / offset.length() * (1.0 + 8.0 * f64::EPSILON);
         let half_angle = 0.5 * (from_behind + sine.asin() * (1.0 + 4.0 * f64::EPSILON));
-        // Written so that NaN, also from a sine above 1, is refused.
+        // Written so that NaN, also from a sine above 1, gives the bound that holds everywhere.
         if !(half_angle < FRAC_PI_2 && sine >= 0.0) {
             return everywhere;
         }
@@ -253,18 +259,19 @@ impl PhotosurfaceMap {
     }
 
     /// The largest singular value of [`PhotosurfaceMap::jacobian`]: how many times a small error of an offset is
-    /// magnified, at most. From 1 straight behind the observer to `exp(eta)` straight ahead and at the observer.
+    /// magnified, at most. It ranges from 1 straight behind the observer to `exp(eta)` straight ahead and at the
+    /// observer.
     ///
     /// # Accuracy
     ///
-    /// A few units in the last place at any rapidity, never above [`PhotosurfaceMap::stretch_bound`]
-    /// (`tests/it/physics/accuracy.rs`).
+    /// The error is a few units in the last place at any rapidity. The result is never above
+    /// [`PhotosurfaceMap::stretch_bound`] (`tests/it/physics/accuracy.rs`).
     pub fn stretch_at(&self, offset_rest: DVec3) -> f64 {
         self.stretch_toward(self.forwardness(offset_rest))
     }
 
-    /// The cotangent of half the angle from the direction of motion, `sqrt(w / u)`: what grows with the stretch, and
-    /// takes less to compute. Infinite straight ahead and at the observer.
+    /// The cotangent of half the angle from the direction of motion, `sqrt(w / u)`. It grows with the stretch and is
+    /// cheaper to compute. It is infinite straight ahead and at the observer.
     pub(crate) fn forwardness(&self, offset_rest: DVec3) -> f64 {
         let (cone, _) = self.light_cone(offset_rest);
         if cone.ahead || cone.larger == 0.0 {
@@ -274,7 +281,7 @@ impl PhotosurfaceMap {
         }
     }
 
-    /// [`PhotosurfaceMap::stretch_at`] where [`PhotosurfaceMap::forwardness`] is this.
+    /// [`PhotosurfaceMap::stretch_at`] for a point with this [`PhotosurfaceMap::forwardness`].
     pub(crate) fn stretch_toward(&self, forwardness: f64) -> f64 {
         let (c, s) = if forwardness <= 1.0 {
             let s = forwardness.hypot(1.0).recip();
@@ -286,22 +293,23 @@ impl PhotosurfaceMap {
         self.larger_singular_value(c, s).min(self.stretch).max(1.0)
     }
 
-    /// With the cosine and the sine of half the angle from the direction of motion: see
-    /// [`PhotosurfaceMap::stretch_bound`].
+    /// The larger singular value of the derivation of [`PhotosurfaceMap::stretch_bound`]; `c` and `s` are the cosine
+    /// and the sine of half the angle from the direction of motion.
     fn larger_singular_value(&self, c: f64, s: f64) -> f64 {
         let sum = (c * (self.stretch + 1.0)).hypot(s * (1.0 + self.squeeze));
         let difference = (c * (self.stretch - 1.0)).hypot(s * (1.0 - self.squeeze));
         0.5 * (sum + difference)
     }
 
-    /// The unit normal of the photosurface where the surface at rest has the normal `normal_rest`.
+    /// The unit normal of the photosurface, in the observer's frame; the surface has the normal `normal_rest` at the
+    /// offset `offset_rest` in the rest frame.
     ///
     /// # Derivation
     ///
-    /// Normals go with the inverse transpose of the Jacobian, `N ~ n_rest - a (n.n_rest) / D`. Split
-    /// along and across the motion and multiplied by `D` this is
-    /// `D n_across + (n.n_rest) (n - gamma beta d_across / r)`: two terms, neither of which cancels in
-    /// itself.
+    /// The inverse transpose of the Jacobian transforms normals: `N ~ n_rest - a (n.n_rest) / D`. Split into parts
+    /// along and across the motion and multiplied by `D`, this is
+    /// `D n_across + (n.n_rest) (n - gamma beta d_across / r)`, where `n_across` is the part of `n_rest` across the
+    /// motion. Neither of the two terms loses digits by cancellation.
     ///
     /// A zero normal stays zero.
     pub fn seen_normal(&self, offset_rest: DVec3, normal_rest: DVec3) -> DVec3 {
@@ -322,8 +330,8 @@ impl PhotosurfaceMap {
         unit(normal).unwrap_or(DVec3::ZERO)
     }
 
-    /// The unit tangent of the photosurface where the surface at rest has the tangent `tangent_rest`:
-    /// tangents go with the Jacobian. A zero tangent stays zero.
+    /// The unit tangent of the photosurface, in the observer's frame; the surface has the tangent `tangent_rest` at the
+    /// offset `offset_rest` in the rest frame. The Jacobian transforms tangents. A zero tangent stays zero.
     pub fn seen_tangent(&self, offset_rest: DVec3, tangent_rest: DVec3) -> DVec3 {
         let n = self.direction;
         let (toward_across, doppler_factor) = self.toward_across(offset_rest);
@@ -337,8 +345,8 @@ impl PhotosurfaceMap {
         unit(tangent_across + n * seen_par).unwrap_or(DVec3::ZERO)
     }
 
-    /// The part across the motion of the direction in which a point is at rest, and the Doppler factor; at the observer
-    /// itself zero and their mean.
+    /// The part of `d / r` across the motion, and the Doppler factor. At the observer the results are zero and the mean
+    /// Doppler factor.
     fn toward_across(&self, offset_rest: DVec3) -> (DVec3, f64) {
         let (cone, _) = self.light_cone(offset_rest);
         let r = cone.distance();
@@ -349,24 +357,26 @@ impl PhotosurfaceMap {
         }
     }
 
-    /// With `q` the ratio of `|across|` to the larger of `u` and `w`, that of the smaller one is `q^2`.
+    /// With `q` the ratio of `|across|` to the larger of `u` and `w`, the ratio of the smaller one to the larger one is
+    /// `q^2`.
     fn doppler_factor_of(&self, cone: &LightCone) -> f64 {
         let (of_larger, of_smaller) = if cone.ahead {
             (self.stretch, self.squeeze)
         } else {
             (self.squeeze, self.stretch)
         };
-        // Ratios only: `squeeze * u` of a subnormal `u` is zero.
+        // Only ratios are used, because `squeeze * u` is zero for a subnormal `u`.
         (of_larger + (of_smaller * cone.ratio) * cone.ratio) / (1.0 + cone.ratio * cone.ratio)
     }
 
     /// Splits an offset into its part across the motion and its light-cone coordinates along it.
     ///
-    /// The smaller of `u` and `w` comes from `u w = |across|^2`: as a difference it would be lost. Within 45
-    /// degrees of the line of motion the part across is in danger, too: close behind a fast observer all of what is
-    /// seen depends on it, and products with a rounded direction leave it only the digits of `r`.
+    /// The smaller of `u` and `w` is computed from `u w = |across|^2`, because a difference would lose its digits.
+    /// Within 45 degrees of the line of motion the part across can lose digits as well: products with a rounded
+    /// direction make its error relative to `r`, and close behind a fast observer the result depends on that part
+    /// alone.
     ///
-    /// Huge offsets are made smaller on the way; the second result is what makes up for that.
+    /// Huge offsets are divided by a power of two; the second result is the factor that undoes this.
     fn light_cone(&self, offset: DVec3) -> (LightCone, f64) {
         let largest = offset.abs().max_element();
         if largest > HUGE && largest < f64::INFINITY {
@@ -483,8 +493,9 @@ mod tests {
         }
     }
 
-    /// `s1 s2 = D` and `s1^2 + s2^2 = 2 + 2 n.a + |a|^2` of the plane of motion, where both have digits; the axes
-    /// and the observer in closed form; below the bound and close to it everywhere.
+    /// The two singular values in the plane of `n` and `d` satisfy `s1 s2 = D` and `s1^2 + s2^2 = 2 + 2 n.a + |a|^2`,
+    /// which the test checks where both have digits. On the axis and at the observer it compares with closed forms.
+    /// Everywhere the stretch has to be below the bound and close to it.
     #[test]
     fn the_stretch_at_a_place_is_the_larger_singular_value() {
         for rapidity in [0.0, 1e-9, 0.7, 3.0, 20.0, 350.0] {
@@ -509,7 +520,7 @@ mod tests {
                     let trace = 2.0 + 2.0 * map.direction.dot(a) + a.length_squared();
                     let determinant = map.doppler_factor(offset);
                     let expected = found * found + (determinant / found).powi(2);
-                    // Terms of gamma^2 cancel in the trace.
+                    // Terms of the size of gamma^2 cancel in the trace.
                     let limit = 16.0 * f64::EPSILON * (2.0 + map.stretch * map.stretch);
                     assert!(
                         (trace - expected).abs() <= limit,

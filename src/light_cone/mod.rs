@@ -1,7 +1,8 @@
-//! Where, when and in which colour a moving observer sees a point: the backward light cone.
+//! The backward light cone: where, when and with which Doppler factor a moving observer sees a point.
 //!
-//! `map` is the mathematics of one observer and one rest frame, `safe_range` the part of it that has no branches; `view`
-//! places it in a scene where both move, `batch` sees all points of a mesh at once, a `block` at a time.
+//! `map` is the photosurface map for one observer and one rest frame, and `safe_range` its version without branches.
+//! `view` applies the map in a scene in which both the observer and the object move. `batch` maps all points of a mesh
+//! at once, a `block` at a time.
 
 mod batch;
 mod block;

@@ -1,22 +1,24 @@
-//! The photosurface map without a branch, for points that are neither tiny nor huge: many at a time.
+//! The photosurface map without branches, for many points at a time; the points must be in the safe range, neither tiny
+//! nor huge.
 
 use glam::DVec3;
 
 use crate::spacetime::exact::{Product, cross_by};
 use crate::spacetime::{Velocity, heading};
 
-/// Up to here offsets and what velocities stretch may be, and down to the inverse, so that no square overflows and none
-/// vanishes that counts.
+/// Largest and smallest size of an offset in the safe range, and largest stretch `exp(eta)` of a velocity. In this
+/// range no square overflows, and none that affects the result vanishes.
 const LARGEST: f64 = f64::from_bits((1023 + 200) << 52);
 const SMALLEST: f64 = 1.0 / LARGEST;
 
-/// One observer's map, ready for points from which all products can be taken.
+/// The map of one observer for points in the safe range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SafeRangeMap {
     direction: DVec3,
-    /// The same as it was given, its largest component from 1 up to 2.
+    /// The direction of motion as the caller gave it, not rounded to unit length, scaled by a power of two so that its
+    /// largest component is from 1 up to 2.
     heading: DVec3,
-    /// Of the heading's length.
+    /// Inverse of the length of `heading`.
     inverse_length: f64,
     /// `exp(eta)`
     stretch: f64,
@@ -25,21 +27,22 @@ pub(super) struct SafeRangeMap {
     gamma_beta: f64,
 }
 
-/// How a point is seen.
+/// How the observer sees a point, before the rotation of the axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SeenPoint {
     pub(super) position: DVec3,
-    /// How far away: `|position|`.
+    /// The distance `|position|` at which the point is seen.
     pub(super) distance: f64,
-    /// From 0 straight behind to 2 straight ahead: see [`forwardness`].
+    /// A measure of the angle from the direction of motion, from 0 straight behind to 2 straight ahead; see
+    /// [`forwardness`].
     pub(super) lean: f64,
-    /// At rest: the part of the offset across the motion, and its length.
+    /// The part of the offset across the motion, and the length of the whole offset, both in the rest frame.
     pub(super) across: DVec3,
     pub(super) distance_at_rest: f64,
 }
 
 impl SafeRangeMap {
-    /// `None` where the velocity is none to take all products with, or there is none.
+    /// `None` if the velocity has no direction or is too fast for the safe range.
     pub(super) fn new(observer: &Velocity) -> Option<Self> {
         let heading = heading(observer.heading())?;
         let stretch = observer.stretch();
@@ -53,13 +56,13 @@ impl SafeRangeMap {
         })
     }
 
-    /// Where and how the point at `offset` from the observer is seen.
+    /// How the observer sees the point with this `offset` from the observer, in the rest frame.
     ///
     /// # Derivation
     ///
-    /// In `u = r - d_par` and `w = r + d_par` the map only multiplies. The smaller of the two comes from
-    /// `u w = |across|^2`, and the part across from error-free products with the heading as it was given: close behind a
-    /// fast observer all of what is seen depends on it.
+    /// The map only multiplies `u = r - d_par` and `w = r + d_par`. The smaller of the two is computed from
+    /// `u w = |across|^2`. The part across the motion is computed by error-free products with the heading as the caller
+    /// gave it, because close behind a fast observer the result depends on that part alone.
     #[inline(always)]
     pub(super) fn see<P: Product>(&self, offset: DVec3) -> SeenPoint {
         let sideways = cross_by::<P>(self.heading, offset) * self.inverse_length;
@@ -80,7 +83,7 @@ impl SafeRangeMap {
         let (seen_w, seen_u) = (w * self.stretch, u * self.squeeze);
         let position = across + self.direction * (0.5 * (seen_w - seen_u));
         SeenPoint {
-            // At rest everything is where it is, to the last bit.
+            // For an observer at rest a point is seen exactly where it is, to the last bit.
             position: if self.stretch == 1.0 {
                 offset
             } else {
@@ -93,12 +96,12 @@ impl SafeRangeMap {
         }
     }
 
-    /// The unit normal where a point is seen, of a surface with this normal at rest, neither tiny nor huge; zero where
-    /// that is zero.
+    /// The unit normal of the photosurface where the point is seen, from the surface's normal `normal_rest` in the rest
+    /// frame, which must be in the safe range. A zero normal stays zero.
     ///
     /// # Derivation
     ///
-    /// That of [`PhotosurfaceMap::seen_normal`](super::PhotosurfaceMap::seen_normal).
+    /// See [`PhotosurfaceMap::seen_normal`](super::PhotosurfaceMap::seen_normal).
     #[inline(always)]
     pub(super) fn seen_normal(&self, seen_point: &SeenPoint, normal_rest: DVec3) -> DVec3 {
         let inverse_distance = seen_point.distance_at_rest.recip();
@@ -115,8 +118,9 @@ impl SafeRangeMap {
     }
 }
 
-/// `sqrt(w / u)`, the cotangent of half the angle from the direction of motion, from `w / u` below 1 and `2 - u / w`
-/// above: they grow together, and no digit is lost near straight behind, where stretching depends on it.
+/// `sqrt(w / u)`, the cotangent of half the angle from the direction of motion. The argument `lean` is `w / u` where
+/// that is below 1, and `2 - u / w` elsewhere, so that it grows with `w / u`. It loses no digits near straight behind,
+/// where the stretch depends on them.
 pub(super) fn forwardness(lean: f64) -> f64 {
     if lean <= 1.0 {
         lean.sqrt()
@@ -125,13 +129,13 @@ pub(super) fn forwardness(lean: f64) -> f64 {
     }
 }
 
-/// Whether all products can be taken with what is this size: the sum of its coordinates' sizes. Not with NaN.
+/// Whether a vector of this [`size`] is in the safe range; false for NaN.
 #[inline(always)]
 pub(super) fn is_in_safe_range(size: f64) -> bool {
     (SMALLEST..=LARGEST).contains(&size)
 }
 
-/// The sum of the sizes of the coordinates; NaN if one is.
+/// The size of a vector: the sum of the absolute values of its coordinates; NaN if one of them is NaN.
 #[inline(always)]
 pub(super) fn size(vector: DVec3) -> f64 {
     vector.x.abs() + vector.y.abs() + vector.z.abs()

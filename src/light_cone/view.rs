@@ -1,38 +1,40 @@
-//! How an observer in motion sees something else in motion: from a moment and a worldline to the photosurface map.
+//! How a moving observer sees a moving object: from a moment of the observer and the object's worldline to the
+//! photosurface map.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::PhotosurfaceMap;
 use crate::spacetime::{Event, Lorentz, Moment, Velocity, WorldLine, length};
 
-/// How an observer sees, at one event, everything that moves with one velocity.
+/// How an observer sees, at one event, everything that moves along with one object.
 ///
-/// Two frames are spoken of: the *rest frame* of the object, with the object's origin at its origin, and
-/// the *observer's frame*, with the observer there. The axes of the rest frame are those of the scene under a pure
-/// boost, those of the observer's frame are the observer's own.
+/// Two frames are used. The *rest frame* of the object has the object's origin at its origin, and axes that a pure
+/// boost makes from the axes of the scene. The *observer's frame* has the observer at its origin, and the observer's
+/// own axes.
 ///
 /// # Derivation
 ///
-/// The observer's place in the rest frame is the boosted difference of the moment's and the worldline's origins, plus
-/// the moment's displacement in the rest frame: differences are taken of numbers as they are given, before anything is
-/// multiplied by `gamma`, and what they round is kept. The transformations from rest frame to scene and
-/// from scene to observer together are one boost, which the photosurface map takes care of, and a
-/// rotation (Wigner's and that of the observer's axes), which follows it.
+/// The observer's position in the rest frame is the boosted difference between the origins of the moment and of the
+/// worldline, plus the moment's displacement in the rest frame. The difference is computed from the given numbers
+/// before any multiplication by `gamma`, and its rounding error is kept. The transformations from the rest frame to the
+/// scene and from the scene to the observer's frame are together one boost followed by a rotation. The photosurface map
+/// includes the boost; the rotation combines Wigner's rotation with that of the observer's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     observer_rest: DVec3,
-    /// How large the numbers are that this place is a sum of.
+    /// Sum of the sizes of the terms whose sum is the observer's position.
     place_size: f64,
     rest_to_observer: Lorentz,
-    /// The rotation that follows the boost.
+    /// The rotation that follows the boost, as a matrix.
     turn: DMat3,
     map: PhotosurfaceMap,
 }
 
 impl View {
-    /// How the observer of `moment` sees what moves along with `object`.
+    /// How the observer of `moment` sees everything that moves along with `object`.
     ///
-    /// An event that is not finite, in either, puts the observer infinitely far away: everything is seen at infinity.
+    /// If an event of `moment` or `object` is not finite, the observer is infinitely far away and sees everything at
+    /// infinity.
     pub fn new(moment: &Moment, object: &WorldLine) -> Self {
         let rest_to_observer = moment.rest_to_observer(object.velocity);
         let relative = rest_to_observer.boost_velocity();
@@ -47,7 +49,7 @@ impl View {
         }
         let place = origin.position + traveled.position;
         Self {
-            // Beyond f64, where infinities may have cancelled.
+            // Beyond f64 infinities may have cancelled to NaN.
             observer_rest: if place.is_finite() {
                 place
             } else {
@@ -60,29 +62,30 @@ impl View {
         }
     }
 
-    /// The observer's velocity in the rest frame.
+    /// The observer's velocity in the object's rest frame.
     pub fn relative_velocity(&self) -> Velocity {
         self.rest_to_observer.boost_velocity()
     }
 
-    /// The observer's place in the rest frame; infinite where it is beyond `f64`.
+    /// The observer's position in the rest frame; infinite if it is beyond `f64`.
     pub fn observer_rest(&self) -> DVec3 {
         self.observer_rest
     }
 
-    /// How large the numbers are that [`View::observer_rest`] is a sum of: it is off by a few units in the last place of
-    /// this, which may be more than of itself.
+    /// The sum of the sizes of the terms whose sum is [`View::observer_rest`]. The error of that position is a few
+    /// units in the last place of this number, which may be much larger than the position itself.
     pub(crate) fn place_size(&self) -> f64 {
         self.place_size
     }
 
-    /// From the rest frame to where things *are* at the moment of observation, in the observer's frame: shortened
-    /// along their motion (Lorentz, FitzGerald), which nobody sees.
+    /// The map from the rest frame to where points *are*, in the observer's frame, at the moment of observation.
+    /// Objects are contracted along their motion there (Lorentz, FitzGerald), which nobody sees.
     ///
     /// # Derivation
     ///
-    /// A point at the offset `d` from the observer, at whatever time at rest, is at the observer's time 0 where its
-    /// place along the motion is `d_par / gamma`; the rotation follows.
+    /// Let `d` be the constant offset of a point from the observer's position, in the rest frame. At time 0 in the
+    /// observer's frame the coordinate of the point along the motion is `d_par / gamma`; the coordinates across the
+    /// motion are unchanged. The rotation follows.
     pub fn rest_to_now(&self) -> DAffine3 {
         let velocity = self.relative_velocity();
         let shortened = velocity.rapidity().cosh().recip() - 1.0;
@@ -92,18 +95,20 @@ impl View {
         DAffine3::from_mat3_translation(matrix, -(matrix * self.observer_rest))
     }
 
-    /// How the observer's axes are turned against those that the boost alone would give (Wigner, and the observer's own axes).
+    /// The rotation between the axes that the boost alone would give and the observer's axes: Wigner's rotation and
+    /// that of the observer's own axes.
     pub fn rotation(&self) -> DQuat {
         self.rest_to_observer.rotation()
     }
 
-    /// Where the point `position_rest` is seen, in the observer's frame: infinite where that is beyond `f64`, or where the
-    /// point or the observer's place is.
+    /// Where the point `position_rest` is seen, in the observer's frame. The result is infinite if it is beyond `f64`,
+    /// or if the point or the observer's position is not finite.
     pub fn seen_position(&self, position_rest: DVec3) -> DVec3 {
         self.turned(self.map.seen_position(self.offset(position_rest)))
     }
 
-    /// The unit normal there of a surface with the normal `normal_rest` at rest.
+    /// The unit normal of the photosurface, in the observer's frame, where the point `position_rest` is seen; the
+    /// surface has the normal `normal_rest` there in the rest frame.
     pub fn seen_normal(&self, position_rest: DVec3, normal_rest: DVec3) -> DVec3 {
         self.turned(
             self.map
@@ -111,7 +116,8 @@ impl View {
         )
     }
 
-    /// The unit tangent there of a surface with the tangent `tangent_rest` at rest.
+    /// The unit tangent of the photosurface, in the observer's frame, where the point `position_rest` is seen; the
+    /// surface has the tangent `tangent_rest` there in the rest frame.
     pub fn seen_tangent(&self, position_rest: DVec3, tangent_rest: DVec3) -> DVec3 {
         self.turned(
             self.map
@@ -119,37 +125,39 @@ impl View {
         )
     }
 
-    /// Frequency seen over frequency emitted at the point `position_rest`.
+    /// The Doppler factor at the point `position_rest`: the frequency seen divided by the frequency emitted.
     pub fn doppler_factor(&self, position_rest: DVec3) -> f64 {
         self.map.doppler_factor(self.offset(position_rest))
     }
 
-    /// A bound of how much anything in the ball of `radius` about `position_rest` is stretched: how much
-    /// farther apart, at most, two points of the ball are seen than they are at rest.
+    /// An upper bound on the stretch in the ball of `radius` around `position_rest`, both in the rest frame: how many
+    /// times farther apart two points of the ball are seen than they are at rest.
     pub fn stretch_bound(&self, position_rest: DVec3, radius: f64) -> f64 {
-        // The rotation that follows the map stretches nothing. The offset is a difference that has been rounded: the true
-        // ball is in one a little larger.
+        // The rotation that follows the map stretches nothing. The offset is a rounded difference, so the radius is
+        // enlarged until the ball contains the true one.
         let offset = self.offset(position_rest);
         let rounding = f64::EPSILON * length(offset);
         self.map.stretch_bound(offset, radius + rounding)
     }
 
-    /// What grows with the stretch at a point: see [`View::stretch_toward`].
+    /// A number that grows with the stretch at a point: the argument of [`View::stretch_toward`].
     pub(crate) fn forwardness(&self, position_rest: DVec3) -> f64 {
         self.map.forwardness(self.offset(position_rest))
     }
 
-    /// How many times a small error of a position is magnified, at most, where [`View::forwardness`] is this.
+    /// How many times, at most, the map magnifies a small error of a position with this [`View::forwardness`].
     pub(crate) fn stretch_toward(&self, forwardness: f64) -> f64 {
         self.map.stretch_toward(forwardness)
     }
 
-    /// The time, in the observer's frame, at which the light seen now left the point; not positive.
+    /// The time, in the observer's frame, at which the light seen now left the point, counted from the observation;
+    /// never positive.
     pub fn emission_time(&self, position_rest: DVec3) -> f64 {
         self.map.emission_time(self.offset(position_rest))
     }
 
-    /// How far away the point at `offset_rest` from the observer is seen.
+    /// The distance, in the observer's frame, at which a point is seen that has the offset `offset_rest` from the
+    /// observer in the rest frame.
     pub(crate) fn seen_distance(&self, offset_rest: DVec3) -> f64 {
         -self.map.emission_time(offset_rest)
     }
@@ -158,7 +166,7 @@ impl View {
         &self.map
     }
 
-    /// From the axes that the boost alone would give to those of the observer.
+    /// The rotation from the axes that the boost alone would give to the observer's axes.
     pub(super) fn turn(&self) -> DMat3 {
         self.turn
     }
@@ -169,7 +177,7 @@ impl View {
 
     fn turned(&self, vector: DVec3) -> DVec3 {
         if !vector.is_finite() {
-            // What is beyond f64 has no direction left to turn.
+            // A vector beyond f64 has no direction that could be turned.
             return DVec3::INFINITY;
         }
         self.turn * vector
@@ -180,7 +188,8 @@ impl View {
 mod tests {
     use super::*;
 
-    /// Through the scene frame: the event at which a point at rest has the observer's time 0 is found by trial.
+    /// The reference goes through the scene frame and solves for the event at which a point at rest has time 0 in the
+    /// observer's frame.
     #[test]
     fn things_are_now_where_two_boosts_put_them() {
         let velocity = |beta, direction| Velocity::from_beta(beta, direction).expect("below 1");
@@ -198,7 +207,7 @@ mod tests {
                 let scene = object.origin + to_scene.apply(Event::new(time, place));
                 to_observer.apply(scene - observer.at(0.75))
             };
-            // The observer's time is linear in the time at rest.
+            // The time in the observer's frame is a linear function of the time in the rest frame.
             let (start, slope) = (seen(0.0).time, seen(1.0).time - seen(0.0).time);
             let event = seen(-start / slope);
             let found = now.transform_point3(place);

@@ -1,64 +1,69 @@
-//! What the tolerances of a scene will take, and what a budget leaves of them.
+//! How many triangles the tolerances of a scene need, and how a budget of triangles loosens them.
 //!
-//! Predictions steer, counts hold: aims are loosened until about as much is predicted as there is, and then each object
-//! is granted so many triangles at each step that all together are within the budget, whatever was predicted.
+//! The *aim* of an object is the tolerance to which it is refined: its own tolerance times a loosening factor. The
+//! budget is kept in two stages. First the aims are loosened until the predicted number of triangles is about the
+//! budget. Then each object is granted a number of triangles at each step; all grants together are within the budget,
+//! even where the predictions are wrong.
 
 use super::placed_object::Granted;
 use super::plan::Predicted;
 use super::{PlacedScene, SurfaceOptions};
 use crate::tessellate::shares;
 
-/// Room that a budget leaves for predictions, which are good to about a half (`tests/it/cli/accuracy.rs`).
+/// Factor by which predicted refinement is enlarged when it is compared with a budget. Predictions are good to about a
+/// half (`tests/it/cli/accuracy.rs`).
 const PREDICTION_ROOM: f64 = 1.2;
 
-/// A tolerance that is advised is so many times looser than the aim: it has to fit by itself, whatever the prediction
-/// misses, while counts hold the aim.
+/// The tolerance that the user is advised to ask for is the aim times this factor. It has to fit without the grants,
+/// even where the prediction is too low.
 const ADVISED: f64 = 4.0 / 3.0;
 
-/// Of more triangles than this, all steps together, a prediction looks at as many, evenly spread, but at each step at
-/// as many as [`MIN_LOOKED_AT`] at least.
+/// A prediction examines at most this many triangles, all steps together, evenly spread over the mesh, but at each step
+/// at least [`MIN_LOOKED_AT`].
 const TRIANGLES_LOOKED_AT: usize = 50_000;
 const MIN_LOOKED_AT: usize = 5_000;
 
-/// Of more steps than this a prediction looks at as many, evenly spread.
+/// A prediction examines at most this many steps, evenly spread.
 const STEPS_LOOKED_AT: usize = 32;
 
-/// The triangles before any refinement may be more than a budget: then no tolerance fits it.
+/// The largest loosening that is tried. No tolerance fits a budget that is smaller than the number of triangles before
+/// refinement.
 const MAX_LOOSENING: f64 = 1e300;
 
-/// A share of the budget beyond the triangles of the source is used up to this part at least, if so many steps suffice.
+/// An object's share of the budget beyond its source triangles is used up to at least this fraction, if
+/// [`MAX_HALVINGS`] halvings suffice.
 const USED: f64 = 0.9;
 const MAX_HALVINGS: usize = 8;
 
-/// Where even the loosest aim takes more than there is, so many times as much is spent: the last few per cent would
-/// take a tolerance that says nothing any more.
+/// An aim is not loosened further once the object needs no more than this many times the triangles of the loosest aim:
+/// the last few per cent would need a meaningless tolerance.
 const MIN_SPENT: f64 = 1.05;
 
-/// What is predicted for each object, at each step that was looked at.
+/// The predictions for each object at each examined step.
 type Forecast = Vec<Vec<Predicted>>;
 
-/// What one object will take, known in a fraction of the time that it takes to make it.
+/// A prediction for one object: how many triangles it needs, found in a fraction of the time of making them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prediction {
-    /// About how many triangles its photosurfaces will have, all steps together.
+    /// About how many triangles the object's photosurfaces will have, all steps together.
     pub triangles: f64,
-    /// How many there are before any refinement, all steps together: of a round shape, as fine as its tolerance asks
-    /// for. In certificates `triangles_in`.
+    /// Number of triangles before refinement, all steps together; a round shape is then as fine as its tolerance asks
+    /// for. Certificates call this number `triangles_in`.
     pub triangles_in: f64,
-    /// Whether its tolerance can be kept, by as many triangles as that.
+    /// Whether that many triangles keep the object's tolerance.
     ///
-    /// Not where rounding alone takes more, where the observer touches a surface and the tolerance is an angle, or
-    /// where nothing is to be subdivided.
+    /// They do not if rounding alone exceeds the tolerance, if the tolerance is an angle and the observer touches a
+    /// surface, or if meshes are not to be subdivided.
     pub reachable: bool,
 }
 
 impl PlacedScene {
-    /// What each object will take, in the order of the scene.
+    /// The prediction for each object, in the order of the scene.
     pub fn predictions(&self, wanted: SurfaceOptions) -> Vec<Prediction> {
         self.predictions_by(&self.forecast(wanted))
     }
 
-    /// What was predicted for each object, and for each step that was looked at.
+    /// The predictions for each object at each examined step.
     fn forecast(&self, wanted: SurfaceOptions) -> Forecast {
         let objects = 0..self.objects.len();
         objects
@@ -79,24 +84,25 @@ impl PlacedScene {
         predictions.collect()
     }
 
-    /// The same placed scene with looser aims, so that all its photosurfaces together have at most `most` triangles; and for
-    /// each object how many times looser a tolerance is that fits by itself, 1 where it is left alone and infinity where no
-    /// aim that was tried is loose enough.
+    /// The same placed scene with looser aims, so that all its photosurfaces together have at most `max_triangles`
+    /// triangles; and for each object the factor by which its tolerance has to be loosened to fit without the budget.
+    /// The factor is 1 if the aim is not loosened, and infinite if no aim that was tried is loose enough.
     ///
-    /// Objects that need less than an equal share of what is left by the others get what they need; the others
-    /// share the rest, and within each the largest gaps are closed first. Certificates are still against the
-    /// tolerances of the scene. Triangles that a source has stay, even if they are more: those of its meshes, and of a
-    /// round shape as many as the coarsest of its kind has.
+    /// An object that needs less than an equal share of what the other objects leave of the budget gets as many
+    /// triangles as it needs. The other objects share the rest, and each of them closes its largest gaps first.
+    /// Certificates still compare with the tolerances of the scene. The triangles of a source are always kept, even if
+    /// they exceed the budget: those of its meshes, or those of the coarsest form of a round shape.
     ///
-    /// The limit holds exactly, also where a prediction is wrong: what is granted is known beforehand, and refinement
-    /// stops when it is used up. Of [`PlacedScene::morphing`] it counts the one mesh of each part.
+    /// The limit holds exactly, even where a prediction is wrong: grants are fixed beforehand, and refinement stops
+    /// when a grant is used up. For [`PlacedScene::morphing`] the limit counts the triangles of each part once, because
+    /// all steps share one mesh.
     #[must_use]
     pub fn within_budget(self, wanted: SurfaceOptions, max_triangles: u64) -> (Self, Vec<f64>) {
         let (placed, loosening, _) = self.fitted(wanted, max_triangles);
         (placed, loosening)
     }
 
-    /// As [`PlacedScene::within_budget`], and what the tolerances themselves need.
+    /// The results of [`PlacedScene::within_budget`], and the predictions for the tolerances of the scene.
     pub(crate) fn fitted(
         mut self,
         wanted: SurfaceOptions,
@@ -141,21 +147,22 @@ impl PlacedScene {
         (self, loosening, needs)
     }
 
-    /// Grants each object so many triangles at each step that all together are at most `most`, or those of the source.
+    /// Grants each object a number of triangles at each step. All triangles together are at most `most`, or those of
+    /// the sources if these are more.
     fn grant(&mut self, forecast: &[Vec<Predicted>], most: u64) {
         let steps = self.scene.steps().len();
         let sources: Vec<u64> = (self.objects.iter())
             .map(|placed_object| placed_object.source_triangles)
             .collect();
         let all: u64 = sources.iter().sum();
-        // What each object needs at each step beyond its source.
+        // The number of triangles that each object needs at each step beyond those of its source.
         let needs: Vec<Vec<f64>> = (forecast.iter().zip(&sources))
             .map(|(at_some, &source)| {
                 let need = |step: usize| {
                     let last = (steps - 1).max(1) as f64;
                     let at = step as f64 / last * (at_some.len() - 1) as f64;
                     let need = at_some[at.round() as usize].needed() - source as f64;
-                    // Infinity and NaN are as good as all that there is.
+                    // A need of infinity or NaN counts as the whole budget.
                     if need < most as f64 {
                         need.max(0.0)
                     } else {
@@ -183,7 +190,7 @@ impl PlacedScene {
         }
     }
 
-    /// The most that an object can have at all steps together.
+    /// Upper limit on the triangles of an object, all steps together.
     fn max_triangles(&self, object: usize) -> f64 {
         let placed_object = &self.objects[object];
         let source = placed_object.source_triangles as f64;
@@ -193,8 +200,9 @@ impl PlacedScene {
             .sum()
     }
 
-    /// Loosens the aim of one object until it needs no more than its share, and hardly less; what it needs then. An
-    /// object that needs more however loose it is comes near to that.
+    /// Loosens the aim of one object until the object needs slightly fewer triangles than its share; returns the need
+    /// with that aim. If the object needs more than its share at any aim, it ends with a need only slightly above the
+    /// smallest one.
     fn loosen(
         &mut self,
         object: usize,
@@ -205,26 +213,27 @@ impl PlacedScene {
         self.objects[object].loosening = MAX_LOOSENING;
         let least = needed(self, object);
         if need <= least {
-            // The source takes all of it, and stays whatever the budget.
+            // The source makes up the whole need, and it is always kept.
             self.objects[object].loosening = 1.0;
             return need;
         }
         if share <= least {
-            // Nothing is left to be granted.
+            // The budget leaves nothing to grant beyond the source.
             return least;
         }
         share = share.max(MIN_SPENT * least);
         let mut too_tight = 1.0;
         let mut loosening: f64 = 1.0;
         self.objects[object].loosening = loosening;
-        // Triangles go with the inverse of the tolerance, but for those that are there anyway.
+        // The number of triangles is inversely proportional to the tolerance, except for the triangles before
+        // refinement.
         let mut factor = (need / share).max(2.0);
         while need > share && loosening < MAX_LOOSENING {
             too_tight = loosening;
             loosening = (loosening * factor).min(MAX_LOOSENING);
             self.objects[object].loosening = loosening;
             let loosened = needed(self, object);
-            // Where that changes little, tolerances that matter are far away.
+            // A small change of the need means that the aim is still much too tight.
             factor = match loosened > 0.5 * need {
                 true => factor * factor,
                 false => (loosened / share).max(2.0),
@@ -235,7 +244,7 @@ impl PlacedScene {
             if need > share || need - least >= USED * (share - least) {
                 break;
             }
-            // The roots first: the product might overflow.
+            // The roots are taken first, because the product might overflow.
             let between = too_tight.sqrt() * loosening.sqrt();
             self.objects[object].loosening = between;
             let need_between = needed(self, object);
@@ -249,7 +258,7 @@ impl PlacedScene {
         need
     }
 
-    /// All steps together, by those that were looked at.
+    /// The prediction for all steps together, from the examined steps.
     fn all_steps(&self, at_some: &[Predicted]) -> Predicted {
         let each = self.scene.steps().len() as f64 / at_some.len() as f64;
         let mut sum = Predicted {
@@ -265,7 +274,7 @@ impl PlacedScene {
         sum
     }
 
-    /// Each step, or some of many, evenly spread.
+    /// The predictions for one object at each step, or at an evenly spread selection of many steps.
     fn predict_some(&self, object: usize, wanted: SurfaceOptions) -> Vec<Predicted> {
         let (object, placed_object) = (&self.scene.objects()[object], &self.objects[object]);
         let steps = self.scene.steps().len();
@@ -285,8 +294,8 @@ impl PlacedScene {
     }
 }
 
-/// Of what there is, what each needs and then shares of the rest, or shares of all in proportion to what each needs. With
-/// each need, the number of triangles of its source.
+/// Divides `whole`. If it suffices for all needs, each gets its need and a share of the rest; otherwise each gets a
+/// share in proportion to its need. Each need comes with the number of triangles of its source.
 fn granted(whole: u64, needs: &[(f64, u64)]) -> Vec<u64> {
     let needed: Vec<f64> = needs.iter().map(|(need, _)| need.ceil()).collect();
     let all: f64 = needed.iter().sum();
@@ -295,7 +304,7 @@ fn granted(whole: u64, needs: &[(f64, u64)]) -> Vec<u64> {
     }
     let needed = needed.into_iter().map(|need| need as u64);
     let rest = whole - all as u64;
-    // What was not predicted may be anywhere.
+    // Triangles that were not predicted may be needed anywhere.
     let weights = needs
         .iter()
         .map(|&(need, source)| need + source as f64 + 1.0);
@@ -304,7 +313,7 @@ fn granted(whole: u64, needs: &[(f64, u64)]) -> Vec<u64> {
 }
 
 impl Predicted {
-    /// With room for what a prediction may miss.
+    /// The predicted number of triangles, with room for the error of the prediction.
     fn needed(&self) -> f64 {
         self.before + PREDICTION_ROOM * (self.triangles - self.before)
     }

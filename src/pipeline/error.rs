@@ -1,22 +1,22 @@
-//! Why a placed scene has no photosurfaces.
+//! Errors of placed scenes and their photosurfaces.
 
 use thiserror::Error;
 
 use crate::spacetime::MAX_RAPIDITY;
 
-/// Why a scene and models make no placed scene, or a placed scene no photosurfaces.
+/// Reasons why a scene and its models make no placed scene, or why a placed scene has no photosurfaces.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PlacedSceneError {
-    /// Not one model for each object.
+    /// The number of models is not the number of objects.
     #[error("there are {models} models for {objects} objects, expected one for each")]
     Models {
-        /// How many objects the scene has.
+        /// Number of objects of the scene.
         objects: usize,
-        /// How many models there are.
+        /// Number of models.
         models: usize,
     },
-    /// A mesh that was moved to where there are no numbers.
+    /// A mesh has a vertex whose position is not finite in the object's rest frame.
     #[error("part \"{part}\" of object \"{object}\" has a vertex that is not finite")]
     NotFinite {
         /// The object in the scene.
@@ -24,7 +24,7 @@ pub enum PlacedSceneError {
         /// The part of its model.
         part: String,
     },
-    /// A model that is not what the shape of its object makes.
+    /// A model is not the one that its object's shape makes.
     #[error(
         "the model of object \"{object}\" is not that of its shape, expected the one that `load_models` makes"
     )]
@@ -32,20 +32,20 @@ pub enum PlacedSceneError {
         /// The object in the scene.
         object: String,
     },
-    /// A velocity that was composed of others and is faster than any that may be given.
+    /// A velocity that is composed of others has a rapidity above [`MAX_RAPIDITY`].
     #[error("the rapidity of {who} is {rapidity}, expected at most {MAX_RAPIDITY}")]
     TooFast {
-        /// The observer, or the object in the scene.
+        /// The observer, or the name of the object.
         who: String,
-        /// Its rapidity.
+        /// The rapidity of its velocity.
         rapidity: f64,
     },
-    /// A step that the scene does not have.
+    /// The scene has no such step.
     #[error("step {step} of a scene with {steps} steps, expected less than {steps}")]
     Step {
         /// The step, counted from 0.
         step: usize,
-        /// How many there are.
+        /// Number of steps of the scene.
         steps: usize,
     },
 }

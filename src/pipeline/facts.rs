@@ -1,4 +1,4 @@
-//! What is said of scenes and photosurfaces in files and in the report.
+//! The facts about scenes and photosurfaces that files and the report contain.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -9,35 +9,36 @@ use serde_json::{Value, json};
 use crate::scene::Scene;
 use crate::tessellate::Certificate;
 
-/// What a photosurface is, in words and numbers: the same in files and in the report.
+/// The facts about a photosurface, the same in files and in the report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Facts {
-    /// Names it in files: unique there, without characters that a reader breaks.
+    /// The name of the photosurface in files: unique there, and without characters that a reading program replaces.
     pub name: String,
     /// The object in the scene.
     pub object: String,
     /// The part of the object's model; empty where there is only one and it has no name.
     pub part: String,
-    /// What else the source says of the part, as it says it.
+    /// The `extras` of the part in the source, unchanged.
     #[serde(skip_serializing_if = "Option::is_none", serialize_with = "as_it_is")]
     pub source: Option<Arc<Value>>,
-    /// Which step, from 0.
+    /// The step, counted from 0.
     pub step: usize,
-    /// Proper time of the observer at this step, from the observation event.
+    /// Proper time of the observer at this step, counted from the observation event, in scene units.
     pub proper_time: f64,
-    /// Lorentz factor between object and observer.
+    /// Lorentz factor of the observer's velocity in the object's rest frame, at this step.
     pub relative_gamma: f64,
-    /// Rapidity between object and observer.
+    /// Rapidity of the observer's velocity in the object's rest frame, at this step.
     pub relative_rapidity: f64,
-    /// How many vertices it has.
+    /// Number of vertices.
     pub vertices: usize,
-    /// How many triangles it has.
+    /// Number of triangles.
     pub triangles: usize,
-    /// How many times an error of the source's coordinates, taken at rest, is magnified at most: the largest stretch
-    /// at a vertex, from 1 to `exp(rapidity)`. A source with `f32` coordinates 1 in size is known to `6e-8`; with a
-    /// condition of 2000 its photosurface is to `1.2e-4`, whatever the certificate says.
+    /// How many times, at most, the photosurface map magnifies an error of the source's coordinates in the rest frame:
+    /// the largest stretch at a vertex, from 1 to `exp(rapidity)`. For example, the `f32` coordinates of a source of
+    /// size 1 are known to `6e-8`; with a condition of 2000 its photosurface is known to `1.2e-4`. The certificate does
+    /// not include this error.
     pub condition: f64,
-    /// How far it is from the true photosurface.
+    /// The proven bounds on the distance from the true photosurface.
     pub certificate: Certificate,
 }
 
@@ -45,7 +46,7 @@ fn as_it_is<S: Serializer>(source: &Option<Arc<Value>>, serializer: S) -> Result
     source.as_deref().serialize(serializer)
 }
 
-/// What the scene is, in words and numbers: the same in files and in the report.
+/// The facts about the scene, the same in files and in the report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SceneFacts {
     /// The scene's title.
@@ -55,7 +56,7 @@ pub struct SceneFacts {
     pub generator: &'static str,
     /// Scene time of the observation event.
     pub observer_time: f64,
-    /// Place of the observation event in the scene frame.
+    /// Position of the observation event in the scene frame.
     pub observer_position: [f64; 3],
     /// Direction of the observer's motion in the scene frame, at the observation event.
     pub observer_direction: [f64; 3],
@@ -65,16 +66,16 @@ pub struct SceneFacts {
     pub observer_gamma: f64,
     /// The observer's rapidity in the scene frame, at the observation event.
     pub observer_rapidity: f64,
-    /// Proper times of the steps, from the observation event.
+    /// Proper times of the observer at the steps, counted from the observation event, in scene units.
     pub steps: Vec<f64>,
-    /// What the sources say of themselves as a whole, as they say it: for each that does, the names of its `objects` and
-    /// its `copyright` and `extras`.
+    /// For each source that has a copyright or `extras` of its own: the names of the `objects` that use it, its
+    /// `copyright` and its `extras`, unchanged.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sources: Vec<Value>,
 }
 
 impl SceneFacts {
-    /// `origins` say of each object what its source says of itself.
+    /// The facts about `scene`; `origins` has the copyright and `extras` of each object's source.
     pub(super) fn new(scene: &Scene, origins: &[Option<Arc<Value>>]) -> Self {
         let observer = scene.observer();
         Self {
@@ -91,7 +92,7 @@ impl SceneFacts {
         }
     }
 
-    /// To whom the sources belong, each once; `None` where none says it.
+    /// The copyright notices of all sources, each once; `None` if no source has one.
     pub fn copyright(&self) -> Option<String> {
         let named = |source: &Value| Some(source.get("copyright")?.as_str()?.to_owned());
         let mut known = HashSet::new();
@@ -101,7 +102,7 @@ impl SceneFacts {
     }
 }
 
-/// What sources say of themselves, once for all objects of a source.
+/// The copyright and `extras` of each source, once for all objects that use it.
 fn sources(scene: &Scene, origins: &[Option<Arc<Value>>]) -> Vec<Value> {
     let mut places: HashMap<*const Value, usize> = HashMap::new();
     let mut sources: Vec<(Vec<&str>, &Arc<Value>)> = vec![];

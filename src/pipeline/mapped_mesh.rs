@@ -6,13 +6,13 @@ use rayon::prelude::*;
 use crate::light_cone::{Batch, Extremes, View};
 use crate::mesh::Mesh;
 
-/// Vertices a thread takes at a time: enough to outweigh handing them over.
+/// Smallest number of vertices that a thread processes at a time: enough to outweigh the cost of handing them over.
 pub(super) const VERTICES_PER_JOB: usize = 4096;
 
-/// And where it makes arrays of them, few enough for the cache of a core.
+/// Number of vertices in one array of results: few enough for the cache of a core.
 const VERTICES_AT_ONCE: usize = 1024;
 
-/// A mesh as it is seen, and what all its vertices have in common.
+/// A mesh in the observer's frame, and the extremes of its vertices.
 #[derive(Clone, Debug)]
 pub(super) struct MappedMesh {
     pub(super) mesh: Mesh,
@@ -20,13 +20,13 @@ pub(super) struct MappedMesh {
 }
 
 impl MappedMesh {
-    /// Every vertex of a mesh at rest mapped, with its normal and its tangent.
+    /// Maps every vertex of a mesh at rest, with its normal and its tangent.
     pub(super) fn new(view: &View, rest: &Mesh) -> Self {
         let (positions, normals, extremes) = places(view, rest);
         let normals = rest.normals().map(|_| normals);
         let tangents = rest.tangents().map(|tangents| {
             let jobs = rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
-            // The map never turns orientation round: the bitangent keeps its sign.
+            // The map preserves orientation, so the bitangent keeps its sign.
             let seen = |(position, tangent): (&_, &DVec4)| {
                 view.seen_tangent(*position, tangent.truncate())
                     .extend(tangent.w)
@@ -39,13 +39,14 @@ impl MappedMesh {
         }
     }
 
-    /// How many times, at most, a small error of a vertex is magnified.
+    /// How many times, at most, the map magnifies a small error of a vertex.
     pub(super) fn condition(&self, view: &View) -> f64 {
         view.stretch_toward(self.extremes.forwardness)
     }
 }
 
-/// Where the vertices are seen, their normals (of no meaning where there are none at rest), and their extremes.
+/// The positions and normals of the vertices in the observer's frame, and their extremes. The normals have no meaning
+/// if the mesh at rest has none.
 fn places(view: &View, rest: &Mesh) -> (Vec<DVec3>, Vec<DVec3>, Extremes) {
     let vertices = rest.positions().len();
     let see = |first: usize, positions: &mut [DVec3], normals: &mut [DVec3]| {
@@ -62,7 +63,7 @@ fn places(view: &View, rest: &Mesh) -> (Vec<DVec3>, Vec<DVec3>, Extremes) {
         let extremes = see(0, &mut positions, &mut normals);
         return (positions, normals, extremes);
     }
-    // Arrays have a known place in the result: it is made where it stays, by all threads.
+    // Each array has a known index in the result, so all threads write directly to the result's memory.
     let jobs = (0..vertices.div_ceil(VERTICES_AT_ONCE)).into_par_iter();
     let arrays = jobs.map(|job| {
         let first = job * VERTICES_AT_ONCE;

@@ -1,4 +1,4 @@
-//! The pipeline: a scene and its models in, the photosurface of every part at every step out.
+//! The pipeline: it makes the photosurface of every part at every step from a scene and its models.
 
 mod budget;
 mod error;

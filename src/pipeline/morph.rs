@@ -1,4 +1,4 @@
-//! Photosurfaces of all steps with the same triangles: what morph targets need.
+//! Photosurfaces of all steps with the same triangles, as morph targets need them.
 
 use super::plan::Plan;
 use super::{Photosurface, PlacedScene, SurfaceOptions};
@@ -7,8 +7,9 @@ impl PlacedScene {
     /// The photosurfaces of every part at all steps, with the same triangles at each: the mesh at rest is refined
     /// until it is within the tolerance at every step.
     ///
-    /// For each part, in the order of the scene, one photosurface a step. Their certificates are for a file in which
-    /// all steps share one offset, as [`Playback::Morph`](crate::write::Playback::Morph) writes it.
+    /// Each item holds the photosurfaces of one part, one for each step; the parts are in the order of the scene. The
+    /// certificates are valid for a file in which all steps share one offset, as
+    /// [`Playback::Morph`](crate::write::Playback::Morph) writes it.
     pub fn morphing(&self, wanted: SurfaceOptions) -> impl Iterator<Item = Vec<Photosurface>> {
         let objects = self.scene.objects().iter().zip(&self.objects);
         objects.flat_map(move |(object, placed_object)| {

@@ -2,16 +2,17 @@
 
 use std::collections::{HashMap, HashSet};
 
-/// How a step is called in names of files and of things in them: `step003`.
+/// The label of a step in the names of files and of nodes and meshes: `step003`.
 pub fn step_label(step: usize) -> String {
     format!("step{step:03}")
 }
 
-/// A name as every reader keeps it: what one of them breaks is `_`.
+/// A name that every reading program keeps unchanged: each character that one of them would replace or drop becomes
+/// `_`.
 ///
-/// Blender, trimesh, MeshLab and the validator keep letters of all scripts and whatever else there is. three.js makes
-/// `_` of white space and drops `[ ] . : /`, which its paths of properties are made of. What is no character to be shown
-/// is no name in any program.
+/// Blender, trimesh, MeshLab and the validator keep all visible characters of all scripts. three.js replaces white
+/// space by `_` and drops `[ ] . : /`, which have a meaning in its property paths. Control characters are useless in
+/// the names of any program.
 pub(super) fn safe_name(wanted: &str) -> String {
     let is_broken =
         |c: char| c.is_control() || c.is_whitespace() || c == '\u{feff}' || "[].:/".contains(c);
@@ -19,18 +20,18 @@ pub(super) fn safe_name(wanted: &str) -> String {
     wanted.chars().map(kept).collect()
 }
 
-/// Makes names that are unique and mean the same to every reader.
+/// Makes names that are unique and that every reading program keeps unchanged.
 #[derive(Default)]
 pub(super) struct UniqueNames {
     taken: HashSet<String>,
-    /// For each name that was wanted again, a number below which all are taken.
+    /// For each name that was wanted more than once, the smallest number that may still be free as a suffix.
     next: HashMap<String, usize>,
 }
 
 impl UniqueNames {
-    /// `wanted` in [`safe_name`] characters, and with a number behind it if it was taken.
+    /// `wanted` in the characters of [`safe_name`], with a number appended if that name is taken.
     ///
-    /// However many want one name, each takes the same time.
+    /// Each call takes the same time, however often the same name is wanted.
     pub(super) fn unique(&mut self, wanted: &str) -> String {
         let safe = safe_name(wanted);
         if self.taken.insert(safe.clone()) {
@@ -76,7 +77,7 @@ mod tests {
         );
     }
 
-    /// Each name knows how far its numbers are used up, or this would take hours.
+    /// Each name remembers its next free number; without that this test would take hours.
     #[test]
     fn many_things_of_one_name_take_no_longer_than_others() {
         let mut names = UniqueNames::default();

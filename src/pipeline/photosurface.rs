@@ -1,4 +1,4 @@
-//! What comes out of the pipeline.
+//! A photosurface, the result of the pipeline.
 
 use std::sync::Arc;
 
@@ -13,23 +13,23 @@ use crate::scene::Attributes;
 /// The photosurface of one part of one object at one step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Photosurface {
-    /// What it is and how it came about.
+    /// The facts about the photosurface, with its certificate.
     pub facts: Facts,
-    /// Its geometry in the observer's frame, observer at the origin: the vertices of the part at rest, in
-    /// the same order, then those that were added.
+    /// The geometry in the observer's frame, with the observer at the origin: first the vertices of the part at rest,
+    /// in the same order, then those that refinement added.
     pub mesh: Mesh,
-    /// The smallest and the largest coordinates of all parts of the object at this step, or at all steps where they
-    /// share one mesh. Files with `f32` have positions relative to the middle of that: parts that share a corner have
-    /// the same numbers there.
+    /// The smallest and the largest coordinates, in the observer's frame, of all parts of the object at this step, or
+    /// at all steps if they share one mesh. Files with `f32` store positions relative to the middle of this box, so
+    /// that parts with a common corner have the same numbers there.
     pub around: (DVec3, DVec3),
-    /// What else was asked for of its vertices.
+    /// The requested attributes of the vertices.
     pub vertex_data: VertexData,
-    /// What it is made of.
+    /// The material of the part; `None` if the source has none.
     pub material: Option<Arc<Material>>,
 }
 
 impl Photosurface {
-    /// What was asked for of its vertices.
+    /// Which attributes the vertices have.
     pub fn attributes(&self) -> Attributes {
         self.vertex_data.attributes()
     }

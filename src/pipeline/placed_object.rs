@@ -1,4 +1,4 @@
-//! Objects in their rest frames, and the shapes that some of them are.
+//! Objects in their rest frames, and the shapes of those that have one.
 
 use glam::DAffine3;
 use rayon::prelude::*;
@@ -8,59 +8,61 @@ use crate::mesh::Mesh;
 use crate::scene::{Object, Source};
 use crate::shape::{Appearance, Shape};
 
-/// A shape of more facets than it may have is tried with so much larger ones, and again.
+/// If a shape has more facets than it may have, its allowed deviation is multiplied by this factor until it fits.
 const COARSER: f64 = 1.1;
 
 /// An object's parts in its rest frame.
 #[derive(Clone, Debug)]
 pub(super) struct PlacedObject {
-    /// Each with its name in files.
+    /// The parts in the rest frame, each with its name in files.
     pub(super) parts: Vec<(String, Part)>,
-    /// Where they are those of a shape.
+    /// The shape from which the parts are made; `None` if they come from a file.
     pub(super) shaped: Option<Shaped>,
-    /// Aim at this many times the tolerance.
+    /// The aim of the object divided by its tolerance.
     pub(super) loosening: f64,
-    /// How many triangles stay, whatever a budget says: those of meshes, or of the coarsest form of a shape.
+    /// Number of triangles that are kept whatever the budget: those of the object's meshes, or those of the coarsest
+    /// form of its shape.
     pub(super) source_triangles: u64,
-    /// How many triangles there may be, if there is a limit.
+    /// How many triangles refinement may add; `None` if there is no limit.
     pub(super) granted: Option<Granted>,
 }
 
-/// A shape, to be made as fine as its tolerance asks for.
+/// A shape, which can be made as fine as its tolerance asks for.
 #[derive(Clone, Debug)]
 pub(super) struct Shaped {
     pub(super) shape: Shape,
     pub(super) appearance: Appearance,
     pub(super) model_to_rest: DAffine3,
     pub(super) largest_scale: f64,
-    /// Of its facets as they were placed, from the curved surface, at rest.
+    /// Bound on the distance between the facets of the placed parts and the curved surface, in the rest frame.
     pub(super) deviation: f64,
 }
 
 /// How many triangles an object may have beyond those of its source.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Granted {
-    /// At each step.
+    /// The number at each step.
     pub(super) steps: Vec<u64>,
-    /// Of one mesh for all steps.
+    /// The number if all steps share one mesh.
     pub(super) together: u64,
 }
 
 impl PlacedObject {
-    /// How many more there may be at a step.
+    /// How many triangles refinement may add at a step.
     pub(super) fn granted(&self, step: usize) -> u64 {
         let granted = self.granted.as_ref();
         granted.map_or(u64::MAX, |granted| granted.steps[step])
     }
 
-    /// How many more there may be where all steps share one mesh.
+    /// How many triangles refinement may add if all steps share one mesh.
     pub(super) fn granted_together(&self) -> u64 {
         self.granted
             .as_ref()
             .map_or(u64::MAX, |granted| granted.together)
     }
 
-    /// A sample of about `most` triangles where there are more, and for each part of how many each is a sample.
+    /// A sample of about `most` triangles, and for each part how many triangles each sampled one stands for. `None` if
+    /// the object has no more than `most` triangles or has a shape.
     pub(super) fn sketch(&self, most: usize) -> Option<(Self, Vec<f64>)> {
         let count = |part: &Part| part.mesh().triangles().len();
         let all: usize = self.parts.iter().map(|(_, part)| count(part)).sum();
@@ -103,7 +105,7 @@ impl Shaped {
         }
     }
 
-    /// Of how many triangles its coarsest form is made; `parts` are those of any.
+    /// Number of triangles of the shape's coarsest form; `parts` are the parts of any form.
     pub(super) fn min_triangles(&self, parts: &[(String, Part)]) -> u64 {
         let coarsest = self.shape.within(f64::INFINITY);
         if coarsest == self.shape {
@@ -115,8 +117,9 @@ impl Shaped {
         }
     }
 
-    /// The shape with the coarsest facets that are not farther off than `deviation` at rest, or the finest ones that are
-    /// not more than `most`; the coarsest of all where that are more.
+    /// The shape with the coarsest facets whose distance from the curved surface is at most `deviation`, in the rest
+    /// frame. If that shape has more than `most` triangles, the result has the finest facets with at most `most`
+    /// triangles, or the coarsest facets if even these are more.
     pub(super) fn within(&self, deviation: f64, most: u64) -> Shape {
         let mut shape = self.shape.within(deviation / self.largest_scale);
         let coarsest = self.shape.within(f64::INFINITY);
@@ -153,7 +156,8 @@ pub(super) fn triangle_count(parts: &[(String, Part)]) -> u64 {
     triangles.sum::<usize>() as u64
 }
 
-/// So many of `all` indices; fewer than all are spread by multiples of the golden ratio: in step with no pattern of rows.
+/// `count` of the indices below `all`. If they are fewer than `all`, multiples of the golden ratio spread them, so that
+/// they do not follow a pattern of rows in the mesh.
 pub(super) fn spread(all: usize, count: usize) -> impl IndexedParallelIterator<Item = usize> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     (0..count).into_par_iter().map(move |index| match count {
@@ -162,7 +166,7 @@ pub(super) fn spread(all: usize, count: usize) -> impl IndexedParallelIterator<I
     })
 }
 
-/// So many triangles of a mesh.
+/// A sample of `triangles` triangles of a mesh.
 fn sample(mesh: &Mesh, triangles: usize) -> Mesh {
     let all = mesh.triangles();
     let corners = spread(all.len(), triangles).flat_map_iter(|index| all[index]);

@@ -1,4 +1,4 @@
-//! A scene with the geometry of its objects, and what is made of them.
+//! A scene with the geometry of its objects, and the photosurfaces that are made from it.
 
 use std::sync::Arc;
 
@@ -17,13 +17,13 @@ use crate::scene::{MarkerRadius, Object, Scene, Source, Tolerance};
 use crate::shape::{Appearance, Color, Shape};
 use crate::spacetime::{MAX_RAPIDITY, Velocity};
 
-/// The observer's marker in files.
+/// Name of the observer's marker in files.
 const MARKER_NAME: &str = "observer";
 const MARKER_RESOLUTION: u32 = 24;
 
 const A_STEP: &str = "whoever asks for a plan asks for a step of the scene";
 
-/// A scene with the geometry of its objects, placed in their rest frames: all that photosurfaces need.
+/// A scene with the geometry of its objects, placed in their rest frames. Photosurfaces are made from it.
 ///
 /// # Example
 ///
@@ -46,9 +46,9 @@ const A_STEP: &str = "whoever asks for a plan asks for a step of the scene";
 pub struct PlacedScene {
     pub(super) scene: Scene,
     pub(super) marker: Option<Part>,
-    /// For every object of the scene.
+    /// One placed object for each object of the scene, in the same order.
     pub(super) objects: Vec<PlacedObject>,
-    /// What the source of each says of itself.
+    /// The copyright and `extras` of each object's source.
     pub(super) origins: Vec<Option<Arc<Value>>>,
 }
 
@@ -57,9 +57,9 @@ impl PlacedScene {
     ///
     /// # Errors
     ///
-    /// Not as many models as objects, a mesh with a vertex that is not finite, a model that is not that of its object's
-    /// shape, as [`load_models`](crate::load_models) makes it, or a composed velocity faster than
-    /// [`MAX_RAPIDITY`].
+    /// An error is returned if the numbers of models and objects differ, if a mesh has a vertex that is not finite, if
+    /// a model is not the one that [`load_models`](crate::load_models) makes from its object's shape, or if a composed
+    /// velocity has a rapidity above [`MAX_RAPIDITY`].
     pub fn new(scene: Scene, models: Vec<Model>) -> Result<Self, PlacedSceneError> {
         let objects = scene.objects();
         if objects.len() != models.len() {
@@ -116,7 +116,7 @@ impl PlacedScene {
         })
     }
 
-    /// The same placed scene with one tolerance for all objects, and no aims that a budget has loosened.
+    /// The same placed scene with one tolerance for all objects; aims that a budget has loosened are reset.
     #[must_use]
     pub fn with_tolerance_for_all(mut self, tolerance: Tolerance) -> Self {
         self.scene = self.scene.with_tolerance_for_all(tolerance);
@@ -146,7 +146,7 @@ impl PlacedScene {
         )
     }
 
-    /// The names of parts that have characters which programs that read files break, each with what it is in files.
+    /// The names of parts that contain characters which reading programs replace, each with its name in files.
     pub fn replaced_names(&self) -> impl Iterator<Item = (String, &str)> {
         let all = self.objects().flat_map(|(object, parts)| {
             let wanted = |part| wanted_name(object, part, parts.len());
@@ -157,14 +157,14 @@ impl PlacedScene {
         all.filter(|(wanted, _)| names::safe_name(wanted) != *wanted)
     }
 
-    /// How the observer sees everything that moves along with an object, at one step, counted from 0; `None` where the
+    /// How the observer sees everything that moves along with an object, at one step, counted from 0; `None` if the
     /// scene has no such step.
     pub fn view(&self, object: &Object, step: usize) -> Option<View> {
         let moment = self.scene.moment(step)?;
         Some(View::new(&moment, &object.world_line()))
     }
 
-    /// The observer's velocity in the rest frame of an object at the step, of all, at which it is fastest.
+    /// The observer's velocity in the rest frame of an object, at the step at which it is fastest.
     pub fn fastest_relative_velocity(&self, object: &Object) -> Velocity {
         let steps = 0..self.scene.steps().len();
         let views = steps.filter_map(|step| self.view(object, step));
@@ -177,7 +177,7 @@ impl PlacedScene {
     ///
     /// # Errors
     ///
-    /// The scene has no such step.
+    /// An error is returned if the scene has no such step.
     pub fn photosurfaces(
         &self,
         step: usize,
@@ -199,7 +199,7 @@ impl PlacedScene {
         Ok(made)
     }
 
-    /// What refinement starts from at one step, for each object.
+    /// The state before refinement at one step, for each object.
     pub(crate) fn unrefined(
         &self,
         step: usize,
@@ -211,8 +211,9 @@ impl PlacedScene {
         })
     }
 
-    /// Whether all that is seen at one step is well within the range of `f32`, so that nothing can overflow or
-    /// vanish; a quick look that may say no without need. `boxes` are around the parts at rest, for each object.
+    /// Whether all seen positions at one step are well within the range of `f32`, so that none can overflow or vanish.
+    /// The test is quick and may be false although the positions are in range. `boxes` are boxes around the parts of
+    /// each object in its rest frame.
     pub(crate) fn is_within_f32(&self, step: usize, boxes: &[Vec<(DVec3, DVec3)>]) -> bool {
         const RANGE: std::ops::Range<f64> = 1e-30..1e30;
         let mut objects = self.scene.objects().iter().zip(boxes);
@@ -227,7 +228,7 @@ impl PlacedScene {
         })
     }
 
-    /// What the scene is, in words and numbers.
+    /// The facts about the scene.
     pub fn facts(&self) -> SceneFacts {
         SceneFacts::new(&self.scene, &self.origins)
     }
@@ -288,7 +289,8 @@ impl PlacedScene {
     }
 }
 
-/// What a velocity that was composed may exceed: two of this rapidity still have a relative one within `f64`.
+/// Checks that a composed velocity does not exceed [`MAX_RAPIDITY`]. The relative velocity of two velocities with this
+/// rapidity is still within `f64`.
 fn check_rapidity(who: &str, velocity: Velocity) -> Result<(), PlacedSceneError> {
     match velocity.rapidity() {
         rapidity if rapidity <= MAX_RAPIDITY => Ok(()),
@@ -299,8 +301,8 @@ fn check_rapidity(who: &str, velocity: Velocity) -> Result<(), PlacedSceneError>
     }
 }
 
-/// Whether the model of an object has the geometry of its shape, if that is where it comes from: certificates count on
-/// how far facets are from the surface that they stand for.
+/// Whether the model of an object has the geometry of the object's shape, if the object has one. Certificates rely on
+/// the known distance between the facets and the curved surface.
 fn is_of_its_shape(object: &Object, model: &Model) -> bool {
     let Source::Shape(shape, appearance) = &object.source else {
         return true;
@@ -315,7 +317,7 @@ fn is_of_its_shape(object: &Object, model: &Model) -> bool {
     model.parts.len() == made.parts.len() && model.parts.iter().zip(&made.parts).all(alike)
 }
 
-/// How a part of an object of so many parts would be called.
+/// The wanted name of a part; `parts` is the number of parts of its object.
 fn wanted_name(object: &Object, part: &Part, parts: usize) -> String {
     match parts {
         1 => object.name.clone(),

@@ -1,22 +1,22 @@
-//! What is wanted of photosurfaces.
+//! Options for making photosurfaces.
 
 use crate::scene::Attributes;
 use crate::tessellate::Precision;
 
-/// What is wanted of photosurfaces beside their shape, and how much may be spent.
+/// Options for making photosurfaces: attributes, refinement and precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceOptions {
-    /// What is to be known of every vertex.
+    /// The attributes that every vertex gets.
     pub attributes: Attributes,
-    /// Whether meshes are refined until they are within the tolerance; if not, every vertex stays what it is and
-    /// the certificate tells how far off the mesh is.
+    /// Whether meshes are refined until they are within the tolerance; if not, no vertex is added and the certificate
+    /// states the resulting bound.
     pub subdivide: bool,
-    /// How many digits the file will have.
+    /// The precision of positions in the file.
     pub precision: Precision,
 }
 
 impl Default for SurfaceOptions {
-    /// Meshes within the tolerance, for glTF, and nothing else.
+    /// Meshes refined to the tolerance, in single precision for glTF, without attributes.
     fn default() -> Self {
         Self {
             attributes: Attributes::default(),

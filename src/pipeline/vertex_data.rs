@@ -10,16 +10,16 @@ use crate::light_cone::View;
 use crate::mesh::Mesh;
 use crate::scene::{Attribute, Attributes};
 
-/// The attributes that were asked for, with a value at every vertex.
+/// The requested attributes, with a value at every vertex.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct VertexData(BTreeMap<Attribute, VertexValues>);
 
 /// The values of one attribute, one for each vertex.
 #[derive(Clone, Debug, PartialEq)]
 pub enum VertexValues {
-    /// Numbers.
+    /// One number at each vertex.
     Numbers(Vec<f64>),
-    /// Vectors.
+    /// One vector at each vertex.
     Vectors(Vec<DVec3>),
 }
 
@@ -41,27 +41,28 @@ impl VertexData {
         Self(columns.collect())
     }
 
-    /// The attributes that there are.
+    /// The attributes that have values.
     pub fn attributes(&self) -> Attributes {
         self.0.keys().copied().collect()
     }
 
-    /// The values of an attribute; `None` where it was not asked for.
+    /// The values of an attribute; `None` if the attribute was not requested.
     pub fn values(&self, attribute: Attribute) -> Option<&VertexValues> {
         self.0.get(&attribute)
     }
 
-    /// Frequency seen over frequency emitted at each vertex.
+    /// The Doppler factor at each vertex: the frequency seen divided by the frequency emitted.
     pub fn doppler_factors(&self) -> Option<&[f64]> {
         self.numbers(Attribute::Doppler)
     }
 
-    /// The time at each vertex at which the light left that is seen now: in the observer's frame, counted from now.
+    /// The time, in the observer's frame, at which the light seen now left each vertex, counted from the observation;
+    /// never positive.
     pub fn emission_times(&self) -> Option<&[f64]> {
         self.numbers(Attribute::EmissionTime)
     }
 
-    /// The place of each vertex in the object's rest frame, the object's origin at its origin.
+    /// The position of each vertex in the object's rest frame, whose origin is the object's origin.
     pub fn rest_positions(&self) -> Option<&[DVec3]> {
         match self.values(Attribute::RestPosition)? {
             VertexValues::Vectors(vectors) => Some(vectors),
@@ -69,7 +70,7 @@ impl VertexData {
         }
     }
 
-    /// Sets the values of an attribute, or takes it away.
+    /// Sets the values of an attribute, or removes them if `values` is `None`.
     pub fn set(&mut self, attribute: Attribute, values: Option<VertexValues>) {
         match values {
             Some(values) => self.0.insert(attribute, values),
@@ -86,7 +87,7 @@ impl VertexData {
 }
 
 impl VertexValues {
-    /// How many vertices have a value of so many numbers; none where values have another number of them.
+    /// The number of vertices, if each value has `columns` numbers; otherwise zero.
     pub(crate) fn count(&self, columns: usize) -> usize {
         match (self, columns) {
             (Self::Numbers(numbers), 1) => numbers.len(),
@@ -95,7 +96,7 @@ impl VertexValues {
         }
     }
 
-    /// One number of the value at a vertex.
+    /// The number `column` of the value at a vertex.
     pub(crate) fn at(&self, vertex: usize, column: usize) -> f64 {
         match self {
             Self::Numbers(numbers) => numbers[vertex],

@@ -1,42 +1,43 @@
-//! How large a gap may be, and where.
+//! How large the gap of an edge or a triangle may be.
 
 use glam::DVec3;
 
 use crate::light_cone::View;
 
-/// What part of an angle the gap gets where other errors take more than there is; the certificate tells. Without it
-/// they would ask for triangles of no size at all.
+/// Where the other errors use up an angular tolerance, the gap may still be this fraction of it. Without this fraction
+/// such a tolerance would ask for triangles of size zero. The certificate states that the tolerance is not kept.
 const MIN_SHARE: f64 = 0.1;
 
-/// The largest gap `e`, in the rest frame before the factor `gamma beta`, that an edge or a triangle may
-/// have.
+/// The largest gap `e` that an edge or a triangle may have: a length in the rest frame, before the factor `gamma beta`.
 #[derive(Clone, Copy, Debug)]
 #[allow(
     clippy::large_enum_variant,
     reason = "there is one for a mesh, and boxed it could not be copied"
 )]
 pub(crate) enum Allowance {
-    /// The same everywhere.
+    /// The same gap everywhere.
     Everywhere(f64),
-    /// As much as the observer sees under one angle.
+    /// The gap that the observer sees under a given angle.
     ///
-    /// The distance at which a point is seen is `gamma (r + beta d_par)`, and on a flat triangle `r` is the
-    /// interpolated one minus `e`: it is at least the smallest at a corner minus `gamma e`. So what is allowed is
-    /// a `share` of the smallest, `less` what other errors take.
+    /// In the observer's frame a point is seen at the distance `gamma (r + beta d_par)`. On a flat triangle `r` is the
+    /// interpolated distance minus `e`, so a point of the triangle is seen at least at the smallest seen distance of a
+    /// corner minus `gamma e`. The allowed gap is therefore the fraction `share` of that smallest distance, minus
+    /// `less` for the other errors.
     Angle {
-        /// Gives the distances.
+        /// Gives the distances at which the corners are seen.
         view: View,
-        /// Of the smallest distance at a corner.
+        /// Allowed gap per smallest seen distance of a corner.
         share: f64,
-        /// Taken by other errors.
+        /// Part of the allowed gap that the other errors use up.
         less: f64,
-        /// Never less than this: where the observer touches a surface, every gap is seen under the same angle.
+        /// Lower limit of the allowed gap. It is needed where the observer touches a surface, because every gap is seen
+        /// under the same angle there.
         least: f64,
     },
 }
 
 impl Allowance {
-    /// So many times as much everywhere.
+    /// The same allowance, multiplied by a factor everywhere.
     pub(super) fn times(&self, factor: f64) -> Self {
         match *self {
             Self::Everywhere(gap) => Self::Everywhere(gap * factor),
@@ -54,7 +55,7 @@ impl Allowance {
         }
     }
 
-    /// What is allowed for the edge or triangle between these offsets from the observer.
+    /// The allowed gap of the edge or triangle whose corners have these offsets from the observer, in the rest frame.
     pub(crate) fn between(&self, offsets: &[DVec3]) -> f64 {
         match self {
             Self::Everywhere(gap) => *gap,
@@ -70,7 +71,8 @@ impl Allowance {
         }
     }
 
-    /// Whether what is allowed there is more than the tolerance, so that it cannot be kept.
+    /// Whether the allowed gap there is at its lower limit, more than the tolerance leaves for it, so that the
+    /// tolerance cannot be kept.
     pub(crate) fn is_at_its_least(&self, offsets: &[DVec3]) -> bool {
         match self {
             Self::Everywhere(_) => false,
@@ -87,7 +89,7 @@ impl Allowance {
     }
 }
 
-/// The smallest of the distances at which points are seen.
+/// The smallest distance, in the observer's frame, at which one of the points is seen.
 fn nearest(view: &View, offsets: &[DVec3]) -> f64 {
     let distances = offsets.iter().map(|&offset| view.seen_distance(offset));
     distances.fold(f64::INFINITY, f64::min)

@@ -1,4 +1,4 @@
-//! A bound of a triangle's gap along one direction, for a fraction of what the exact gap costs.
+//! A bound on a triangle's gap from a single direction, for a fraction of the cost of the exact gap.
 
 use glam::{DVec2, DVec3};
 
@@ -6,18 +6,18 @@ use super::chart::Plane;
 
 const EPSILON: f64 = f64::EPSILON;
 
-/// Distances in which the squares and products below neither overflow nor vanish.
+/// Range of distances from the observer for which the squares and products below neither overflow nor vanish.
 const PLAIN: std::ops::Range<f64> = 1e-60..1e60;
 
-/// As much of a bound may be in doubt for it to count as the gap itself.
+/// A bound counts as the gap itself if at most this fraction of it is uncertain.
 const DOUBT: f64 = 1e-6;
 
-/// A bound of a triangle's gap.
+/// An upper bound on a triangle's gap, in the rest frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Along {
-    /// Proven: not below the gap. Infinity where nothing is known.
+    /// Proven to be at least the gap; infinity where nothing is known.
     pub(super) bound: f64,
-    /// Whether the gap is very likely within a millionth of that.
+    /// Whether the gap is very likely within a millionth of the bound.
     pub(super) is_sharp: bool,
 }
 
@@ -28,14 +28,14 @@ impl Along {
     };
 }
 
-/// A point of a plane, and what is known of it.
+/// A point of a triangle's plane, with its distance from the observer and its coordinates in the plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlanePoint {
-    /// Offset from the observer.
+    /// Offset from the observer, in the rest frame.
     pub(super) offset: DVec3,
-    /// Its length.
+    /// Length of the offset.
     pub(super) distance: f64,
-    /// About where in the plane it is.
+    /// Approximate coordinates in the plane.
     pub(super) place: DVec2,
 }
 
@@ -49,21 +49,23 @@ impl PlanePoint {
     }
 }
 
-/// A bound of the gap of a triangle in a plane.
+/// A bound on the gap of a triangle in a plane.
 ///
 /// # Derivation
 ///
-/// For any direction `G` with `|G| <= 1` no point `x` of the triangle has a larger gap than the largest
-/// `r_i - G.d_i` of a corner, as `|x| >= G.x`. The `G` for which that is the gap itself has the in-plane part `g` by
-/// which the interpolated distance grows, and points to the place `h g / sqrt(1 - g^2)` in the plane; where that is beyond
-/// an edge, it points to the worst place of that edge. Here both are computed as roughly as it goes: the bound holds for
-/// whatever `G` comes out, one longer than 1 by `x` counts with `x` times the largest distance.
+/// For every vector `G` with `|G| <= 1`, no point `x` of the triangle has a larger gap than the largest `r_i - G.d_i`
+/// of a corner, because `|x| >= G.x`. For the best `G` this bound is the gap itself. The in-plane part of that `G` is
+/// the gradient `g` of the interpolated distance, and `G` points from the observer to the point `h g / sqrt(1 - g^2)`
+/// of the plane, where `h` is the distance of the plane; if that point is beyond an edge, `G` points to the worst point
+/// of that edge instead. This function computes `G` only roughly, because the bound holds for any `G`. If the length of
+/// `G` exceeds 1, the excess times the largest distance is added to the bound.
 ///
 /// # Accuracy
 ///
-/// Distances to `2.5 u`, dot products to `3 u r`, the difference, the length of `G` and what is made of it to `4 u r`,
-/// with `u` half an epsilon: less than `8 epsilon r` together, which is added. So where a gap is `r / 1e9` the bound
-/// is above it by about a millionth of it.
+/// With `u` for half an epsilon and `r` for the largest distance, the errors are `2.5 u r` for a distance, `3 u r` for
+/// a dot product, and `4 u r` for the difference, the length of `G` and the numbers computed from it. Together they are
+/// less than `8 epsilon r`, which is added to the bound. Where the gap is `r / 1e9`, the bound is therefore above it by
+/// about a millionth of the gap.
 pub(super) fn gap_along(plane: &Plane, [a, b, c]: [&PlanePoint; 3]) -> Along {
     if ![a, b, c]
         .iter()
@@ -107,7 +109,7 @@ pub(super) fn gap_along(plane: &Plane, [a, b, c]: [&PlanePoint; 3]) -> Along {
     let excess = |point: &PlanePoint| point.distance - direction.dot(point.offset);
     let (of_p, of_q, of_other) = (excess(p), excess(q), excess(other));
     let largest = of_p.max(of_q).max(of_other);
-    // At the worst place the gap is the mean of what it is between.
+    // The gap at the worst point is a weighted mean of the numbers `r_i - G.d_i` of the corners around it.
     let least = if is_inside {
         of_p.min(of_q).min(of_other)
     } else {
@@ -150,7 +152,7 @@ mod tests {
         Some(gap_along(&plane, [&a, &b, &c]))
     }
 
-    /// The exact gap is known to be right, to 1e-12 for triangles like most of these.
+    /// `triangle_gap` is tested elsewhere; it is accurate to 1e-12 for most of these triangles.
     #[test]
     fn the_bound_is_above_the_gap_and_mostly_sharp() {
         let (mut sharp, mut all) = (0, 0);
@@ -163,7 +165,7 @@ mod tests {
                 along.bound >= gap * (1.0 - 1e-10),
                 "{corners:?}: {along:?} {gap}"
             );
-            // Rounding is more than a millionth of a smaller one.
+            // For a smaller gap the rounding error is more than a millionth of it.
             all += usize::from(gap > 1e-8 * corners[0].length());
             if along.is_sharp {
                 sharp += 1;
@@ -173,11 +175,11 @@ mod tests {
                 );
             }
         }
-        // Most, or the exact gap would be asked for after all.
+        // Most bounds have to be sharp; otherwise the program would compute the exact gap anyway.
         assert!(all > 2000 && sharp > all / 2, "{sharp} of {all}");
     }
 
-    /// A plane that is not that of the corners makes the bound worse, never wrong.
+    /// With a plane that is not the plane of the corners the bound is larger, but still a bound.
     #[test]
     fn the_bound_holds_for_whatever_plane() {
         let mut different = 0;

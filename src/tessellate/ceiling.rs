@@ -1,44 +1,49 @@
-//! Bounds of a triangle's gap and of the triangles it needs that cost next to nothing, to pass over most of many
-//! triangles.
+//! Very cheap bounds on a triangle's gap and on the number of triangles that it needs. They settle most triangles of a
+//! large mesh.
 
 use glam::DVec3;
 
-/// Squares of distances beyond this may overflow or vanish in what follows.
+/// Range of squared distances for which the products below neither overflow nor vanish.
 const PLAIN: std::ops::RangeInclusive<f64> = 1e-200..=1e200;
 
-/// Of squares of sides: where the shortest is less than this part of the longest, the largest angle is not known well.
+/// Where the square of the shortest side is less than this fraction of the square of the longest side, the largest
+/// angle is not known accurately.
 const NEEDLE: f64 = 1e-6;
 
-/// Room for the roundings: of a dozen operations, and of the angle of what is all but a needle, of a thousand epsilon.
+/// Room for rounding errors: a dozen operations, and a thousand epsilon for the angle of a triangle that is almost a
+/// needle.
 const UP: f64 = 1.0 + 1e-11;
 
-/// What is known at once of a triangle that is small against its distance.
+/// Cheap bounds for a triangle that is small compared with its distance from the observer.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ceilings {
-    /// Never below its gap.
+    /// An upper bound on the triangle's gap, a length in the rest frame.
     pub(crate) gap: f64,
-    /// Never below the integral of `2 h / r^2` over it, `h` the distance of its plane.
+    /// An upper bound on the integral of `2 h / r^2` over the triangle, where `h` is the distance of its plane from the
+    /// observer and `r` that of the point; also a length in the rest frame.
     pub(crate) area: f64,
 }
 
 impl Ceilings {
-    /// Of a triangle that is not small against its distance.
+    /// The bounds for a triangle that is not small compared with its distance.
     pub(crate) const UNKNOWN: Self = Self {
         gap: f64::INFINITY,
         area: f64::INFINITY,
     };
 }
 
-/// Both bounds of the triangle with corners `a`, `b`, `c` relative to the observer; infinity where the triangle is not
-/// small against its distance. Without a branch.
+/// Both bounds for the triangle whose corners have the offsets `a`, `b`, `c` from the observer, in the rest frame;
+/// infinity where the triangle is not small compared with its distance. The computation has no branch.
 ///
 /// # Derivation
 ///
-/// In the triangle's plane no second derivative of the distance `r` is larger than `1/r`. With `m` its largest there and
-/// all corners within `R` of a point `o`, `u = m |x - o|^2 / 2` minus `r` is convex, and so above itself when it is
-/// interpolated between the corners; what interpolating does to `u` alone is at most `m R^2 / 2`. The smallest circle
-/// has `R = L / 2`, `L` the longest side, where the angle `C` across is obtuse, else `R = L / (2 sin C)`; in any
-/// triangle `R^2 <= L^2 / 3` (Jung). Nothing in the triangle is nearer than `|a| - L`.
+/// In the triangle's plane no second derivative of the distance `r` is larger than `1/r`. Let `m` be the largest `1/r`
+/// on the triangle, let all corners lie within the radius `R` of a point `o`, and let `u = m |x - o|^2 / 2`. The
+/// function `u - r` is convex, so its interpolation between the corners is nowhere below the function itself. The gap
+/// is therefore at most the interpolation of `u` minus `u`, which is at most `m R^2 / 2`. Let `L` be the longest side
+/// and `C` the angle opposite. The smallest circle around the triangle has `R = L / 2` if `C` is obtuse, else
+/// `R = L / (2 sin C)`; in any triangle `R^2 <= L^2 / 3` (Jung's theorem). No point of the triangle is nearer to the
+/// observer than `|a| - L`.
 #[inline(always)]
 pub(crate) fn ceilings([a, b, c]: [DVec3; 3]) -> Ceilings {
     let distance_squared = a.length_squared();
@@ -47,7 +52,8 @@ pub(crate) fn ceilings([a, b, c]: [DVec3; 3]) -> Ceilings {
     let longest = larger(larger(p, q), s);
     let shortest = -larger(larger(-p, -q), -s);
     let middle = larger(larger(smaller(p, q), smaller(q, s)), smaller(p, s));
-    // 2 |v| |w| cos C of the two shorter sides, squared over 4 of their squares: cos^2 C, from 0 to 1/4.
+    // `twice_product` is 2 |v| |w| cos C for the two shorter sides v and w. Its square divided by 4 v^2 w^2 is cos^2 C,
+    // from 0 to 1/4.
     let twice_product = larger(shortest + middle - longest, 0.0);
     let four_sines = 4.0 - twice_product * twice_product / (shortest * middle);
     let four_sines = if shortest >= NEEDLE * longest {
@@ -57,9 +63,9 @@ pub(crate) fn ceilings([a, b, c]: [DVec3; 3]) -> Ceilings {
     };
     let nearest = distance_squared.sqrt() - longest.sqrt();
     let twice_volume = a.dot(ab.cross(ac)).abs();
-    // The volume's roundings are of its terms.
+    // The rounding error of the volume is relative to its terms.
     let rounded = 64.0 * f64::EPSILON * distance_squared.sqrt() * longest;
-    // Written so that NaN is refused.
+    // Written so that NaN gives `UNKNOWN`.
     let known = PLAIN.contains(&distance_squared) && 4.0 * longest <= distance_squared;
     if known {
         Ceilings {
@@ -112,15 +118,16 @@ mod tests {
         assert!(tightest > 0.5, "{tightest}");
     }
 
-    /// Small triangles of every shape across the line of sight: there the ceiling is the gap, but for the little by
-    /// which the near side is nearer, wherever the largest angle is known well.
+    /// For small triangles of every shape across the line of sight the ceiling equals the gap wherever the largest
+    /// angle is known accurately, except for a small excess because the near side is nearer.
     #[test]
     fn across_the_line_of_sight_the_ceiling_is_the_gap() {
         let size = 1e-4;
         let at = |x: f64, y: f64| DVec3::new(size * x, size * y, 1.0);
         for i in 0..=40 {
             for j in 1..=40 {
-                // All shapes whose longest side is the one from (0, 0) to (1, 0), with obtuse, right and acute angles.
+                // These are all shapes whose longest side is the one from (0, 0) to (1, 0), with obtuse, right and
+                // acute angles.
                 let (x, y) = (f64::from(i) / 40.0, f64::from(j) / 40.0);
                 if x.hypot(y) > 1.0 || (1.0 - x).hypot(y) > 1.0 {
                     continue;
@@ -130,7 +137,7 @@ mod tests {
                     let [p, q, r] = corners;
                     let (ceiling, gap) = (ceilings(corners).gap, triangle_gap(p, q, r));
                     assert!(ceiling >= gap, "{x} {y}: {ceiling} {gap}");
-                    // The longest side and its square against the distance, three times.
+                    // The room is three times the longest side divided by the distance.
                     assert!(
                         ceiling <= gap * (1.0 + 3.0 * size),
                         "{x} {y}: {ceiling} {gap}"
@@ -151,7 +158,7 @@ mod tests {
         ] {
             assert_eq!(ceilings(corners).gap, f64::INFINITY, "{corners:?}");
         }
-        // A point has no angles.
+        // A triangle that is a single point has no angles, and its gap is zero.
         assert_eq!(ceilings([DVec3::X; 3]).gap, 0.0);
     }
 }

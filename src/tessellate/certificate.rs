@@ -1,4 +1,4 @@
-//! The certificate: a proof of how far a mesh is from the true photosurface.
+//! The certificate: a proven bound on the distance between a mesh and the true photosurface.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -9,60 +9,64 @@ use crate::light_cone::{Extremes, View};
 use crate::mesh::Mesh;
 use crate::scene::Unit;
 
-/// Room for the few roundings of a product of bounds.
+/// Room for the rounding errors of a short product of bounds.
 const UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
-/// How far a mesh is, at most, from the true photosurface.
+/// A proven bound on the distance between a mesh and the true photosurface, with its parts.
 ///
 /// Lengths are in the observer's frame; where the tolerance is an angle, `tolerance`, `gap`, `curvature`,
 /// `rounding` and `total` are angles seen by the observer, in degrees.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Certificate {
-    /// Of all these numbers: a length, or degrees.
+    /// Unit of the tolerance and of all bounds: a length in the observer's frame, or degrees.
     #[serde(serialize_with = "name")]
     pub unit: Unit,
-    /// What was asked for.
+    /// The tolerance that was asked for.
     pub tolerance: f64,
-    /// Proven: between the mapped flat triangles and the photosurface of the triangles at rest.
+    /// Proven bound on the distance between the mapped flat triangles and the photosurface of the flat triangles at
+    /// rest.
     pub gap: f64,
-    /// Proven: between the photosurfaces of the triangles at rest and of the curved surface that they stand for.
+    /// Proven bound on the distance between the photosurface of the triangles at rest and that of the curved surface
+    /// that they stand for.
     pub curvature: f64,
-    /// Proven: by rounding, of the computation and of the numbers in the file.
+    /// Proven bound on the distance that rounding adds, in the computation and in the numbers of the file.
     pub rounding: f64,
-    /// Proven: the sum of the three.
+    /// Sum of the three bounds.
     pub total: f64,
     /// Whether the total is within the tolerance.
     pub complete: bool,
-    /// Triangles of the mesh at rest.
+    /// Number of triangles of the mesh at rest.
     pub triangles_in: usize,
-    /// Triangles of the photosurface.
+    /// Number of triangles of the photosurface.
     pub triangles_out: usize,
-    /// The fewest triangles, each inside one at rest, that theory allows for a gap as large as the tolerance.
+    /// The fewest triangles, each inside a triangle at rest, with which the gap can be within the tolerance by theory.
     pub minimum_triangles: f64,
-    /// `triangles_out / minimum_triangles`
+    /// The ratio `triangles_out / minimum_triangles`.
     pub ratio: f64,
 }
 
-/// How many digits the numbers of a file have.
+/// The precision of the positions in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Precision {
-    /// `f32`, relative to an offset in the middle of the mesh: glTF.
+    /// `f32`, relative to an offset in the middle of the mesh, as in glTF.
     #[default]
     Single,
-    /// `f64`: PLY.
+    /// `f64`, as in PLY.
     Double,
 }
 
-/// A bound of what rounding moves a vertex by, for every vertex of a mesh.
+/// An upper bound on the distance, in the observer's frame, by which rounding moves any vertex of a mesh.
 ///
 /// # Derivation
 ///
-/// The place in the rest frame is off by a few units in the last place of the coordinates that it is computed
-/// from (the object's place, the numbers that the observer's place is a sum of, the interpolation of new vertices): at
-/// most 8 epsilon of their size, which the map stretches by at most `stretch`. The map itself adds at most 16 epsilon
-/// of the place; what a composed velocity, known to its last place, makes of it is 4 epsilon of `stretch r`. In a file with `f32` each
-/// coordinate relative to the offset, at most half the extent and a sixteenth of the largest extent, is
-/// rounded; morph targets add a difference, at most twice as large, and so round it three times.
+/// The position in the rest frame has an error of a few units in the last place of the coordinates from which it is
+/// computed: the object's position, the terms whose sum is the observer's position, and the interpolation of new
+/// vertices. This error is at most 8 epsilon of their size, and the map stretches it by at most `stretch`. The map
+/// itself adds at most 16 epsilon of the seen distance. A composed velocity is known to its last digit; its error moves
+/// the vertex by at most 4 epsilon of `stretch r`, with `r` the distance in the rest frame. In a file with `f32` each
+/// coordinate is rounded relative to the offset; it is at most half the extent plus a thirty-second of the largest
+/// extent. A morph target adds a difference that is at most twice as large, so that a coordinate is rounded three
+/// times.
 pub(crate) fn rounding_bound(
     view: &View,
     seen: &Extremes,
@@ -78,17 +82,18 @@ pub(crate) fn rounding_bound(
     double + roundings * largest_local * (0.5 * f64::from(f32::EPSILON)) * 1.01
 }
 
-/// Positions as `f32` relative to an offset.
+/// Positions that a file stores as `f32`, relative to an offset.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Singles {
-    /// Of all positions with that offset.
+    /// Extent of all positions with the same offset, in the observer's frame.
     pub(crate) extent: DVec3,
-    /// How many times they are rounded.
+    /// How many times each position is rounded.
     pub(crate) roundings: f64,
 }
 
-/// A bound of how much anything near a triangle is stretched: in the ball that reaches twice as far from its
-/// middle as its corners, so that it holds a curved surface that passes through them.
+/// An upper bound on how many times the photosurface map stretches lengths near a triangle at rest. The bound holds in
+/// a ball around the triangle's centroid that reaches twice as far as the corners, and so contains a curved surface
+/// through the corners.
 pub(crate) fn local_stretch(view: &View, [a, b, c]: [DVec3; 3]) -> f64 {
     let middle = (a + b + c) / 3.0;
     let reach = [a, b, c]
@@ -98,20 +103,20 @@ pub(crate) fn local_stretch(view: &View, [a, b, c]: [DVec3; 3]) -> f64 {
     view.stretch_bound(middle, 2.0 * reach)
 }
 
-/// What a certificate adds up, as lengths in the observer's frame.
+/// The bounds that a certificate adds up: lengths in the observer's frame, unless stated otherwise.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounds {
-    /// `gamma beta e`, the largest of the mesh.
+    /// The largest `gamma beta e` of the mesh's triangles.
     pub(crate) gap: f64,
-    /// The distance of facets from a curved surface, at rest.
+    /// Bound on the distance of the facets from the curved surface, in the rest frame.
     pub(crate) deviation: f64,
-    /// The same as seen, at most.
+    /// Bound on the same distance on the photosurface, in the observer's frame.
     pub(crate) curvature: f64,
-    /// See [`rounding_bound`].
+    /// The result of [`rounding_bound`].
     pub(crate) rounding: f64,
 }
 
-/// How many triangles there were, are, and have to be at least.
+/// Numbers of triangles before and after refinement, and the fewest that theory allows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Counts {
     pub(crate) triangles_in: usize,
@@ -120,7 +125,7 @@ pub(crate) struct Counts {
 }
 
 impl Certificate {
-    /// With the tolerance and all bounds as lengths.
+    /// A certificate whose tolerance and bounds are lengths in the observer's frame.
     pub(crate) fn of_lengths(tolerance: f64, bounds: Bounds, counts: Counts) -> Self {
         let total = bounds.gap + bounds.curvature + bounds.rounding;
         Self::new(
@@ -131,11 +136,11 @@ impl Certificate {
         )
     }
 
-    /// With the tolerance an angle seen by the observer, in degrees.
+    /// A certificate whose tolerance and bounds are angles seen by the observer, in degrees.
     ///
-    /// A point displaced by a length is seen displaced by at most `asin(length / distance)`, the distance being
-    /// that of the nearer one: on a triangle at least the smallest of a corner minus `gamma e`, and what
-    /// curvature and rounding may take away.
+    /// A point that is displaced by a length is seen displaced by an angle of at most `asin(length / distance)`, where
+    /// the distance is that of the nearer of its two positions. On a triangle this distance is at least the smallest
+    /// seen distance of a corner minus `gamma e`, minus the bounds of curvature and rounding.
     pub(crate) fn of_angles(
         degrees: f64,
         view: &View,
@@ -162,7 +167,7 @@ impl Certificate {
                 - bounds.rounding;
             let sine = |length: f64| {
                 match length {
-                    // Nothing is nothing however near: a flat shape has no curvature.
+                    // A length of zero is seen under an angle of zero at any distance: a flat shape has no curvature.
                     0.0 => 0.0,
                     _ if length < nearest => length / nearest,
                     _ => 2.0,
@@ -182,7 +187,7 @@ impl Certificate {
         };
         let certificate = Self::new(Unit::Degrees, degrees, sines.map(angle), counts);
         Self {
-            // Nothing is seen farther off than on the other side of the sky.
+            // No displacement on the sky is larger than 180 degrees.
             total: certificate.total.min(180.0),
             ..certificate
         }
@@ -191,7 +196,7 @@ impl Certificate {
     fn new(unit: Unit, tolerance: f64, bounds: [f64; 4], counts: Counts) -> Self {
         let [gap, curvature, rounding, total] = bounds;
         let total = total * UP;
-        // Some triangle there has to be, whatever overflowed on the way to their number.
+        // The fewest triangles are at least one, even if the computation of their number overflowed.
         let minimum_triangles = match counts.minimum_triangles.is_nan() {
             true => 1.0,
             false => finite(counts.minimum_triangles),
@@ -216,8 +221,8 @@ fn name<S: Serializer>(unit: &Unit, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(unit)
 }
 
-/// A number that a file can say: JSON has no infinity, and instead of one `null` would be read. What is beyond `f64`, or
-/// unknown, is the largest there is; a certificate with such a bound is not complete.
+/// The number, or the largest `f64` in place of infinity or NaN. JSON has no infinity, and readers would find `null`
+/// instead. A certificate with such a bound is not complete.
 fn finite(number: f64) -> f64 {
     if number.is_nan() {
         return f64::MAX;

@@ -1,37 +1,40 @@
-//! The plane of a triangle, and charts of it: the observer's sky, or flatter ones.
+//! The plane of a triangle, and charts of that plane: the observer's sky, or a flatter chart.
 
 use glam::{DVec2, DVec3};
 
 use super::Allowance;
 
-/// More points than this are not spent on a chart that does not fit.
+/// The largest number of extra points for a chart that is flatter than the sky.
 const MAX_MORE: f64 = 1e6;
 
-/// So many times the power of a chart over what is allowed of a distance: all around, over forty powers of `e`, and that
-/// five times.
+/// Extra points for a chart with a power, in units of the power divided by the allowed gap per distance. The number is
+/// enough for all directions and distances over forty powers of `e`, five times.
 const POINTS_OF_POWER: f64 = 500.0;
 
-/// Steps to find a place of a chart with a power: nearly always less than ten.
+/// Limit on the steps that find the point of a plane from its chart coordinates if the chart has a power; nearly always
+/// fewer than ten are needed.
 const MAX_STEPS: usize = 100;
 
-/// The plane of a triangle, with coordinates from the point nearest to the observer.
+/// The plane of a triangle, in the rest frame, with coordinates whose origin is the plane's point nearest to the
+/// observer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
     pub(super) x: DVec3,
     pub(super) y: DVec3,
-    /// The unit normal that leads away from the observer.
+    /// The unit normal that points away from the observer.
     pub(super) away: DVec3,
     /// Distance of the plane from the observer.
     pub(super) height: f64,
-    /// Distance of the triangle from the observer.
+    /// Distance of the nearest point of the triangle from the observer.
     pub(super) nearest: f64,
     corners: [DVec2; 3],
-    /// Twice the area.
+    /// Twice the area of the triangle.
     area: f64,
 }
 
 impl Plane {
-    /// `None` for a triangle without a plane.
+    /// The plane of the triangle whose corners have these offsets from the observer; `None` if the triangle is too thin
+    /// to have one.
     pub(super) fn new([a, b, c]: [DVec3; 3]) -> Option<Self> {
         let x = (b - a).try_normalize()?;
         let normal = (b - a).cross(c - a).try_normalize()?;
@@ -55,8 +58,8 @@ impl Plane {
         })
     }
 
-    /// What part of the distance is allowed as a gap, on the whole: between the least and the most at corners and in the
-    /// middles of sides.
+    /// The allowed gap per distance from the observer, as one number for the whole triangle: the geometric mean of the
+    /// smallest and the largest value at the corners and at the midpoints of the sides.
     fn share(&self, allowance: &Allowance) -> f64 {
         let [a, b, c] = self.corners;
         let places = [a, b, c, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
@@ -87,39 +90,42 @@ impl Plane {
     }
 }
 
-/// A chart of a plane: `w = q / (r + h) (r / reach)^power` for the offset `q` from the foot of the perpendicular, with
-/// `r = hypot(q, h)`.
+/// A chart of a plane: `w = q / (r + h) (r / reach)^power`, where `q` is the in-plane offset from the foot of the
+/// perpendicular through the observer, and `r = hypot(q, h)`.
 ///
-/// With the height `h` of the plane and the power zero it is the stereographic chart of the sky. Where the observer is
-/// in the plane or next to it that is all but a line, the horizon; a larger height is flatter than the sky, and with
-/// a power the distances from the observer are told apart by their logarithm: what suits gaps that are allowed in
-/// proportion to the distance, over any number of powers of ten.
+/// If `h` is the distance of the plane from the observer and the power is zero, this is the stereographic chart of the
+/// sky. For an observer in the plane or next to it, that chart shrinks to the horizon, almost a line. A larger height
+/// makes the chart flatter than the sky. A power separates distances from the observer by their logarithm; this suits
+/// an allowed gap that is proportional to the distance, over any number of powers of ten.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chart {
     pub(super) plane: Plane,
     pub(super) height: f64,
     pub(super) power: f64,
-    /// Farther away than any corner.
+    /// A distance larger than that of any corner.
     reach: f64,
-    /// The smallest of what is allowed.
+    /// The smallest allowed gap of the triangle.
     allowed: f64,
 }
 
-/// How many times as far away the far end of a triangle may be as its near end: the cheapest, about, in a plane
-/// that the observer is in. Its logarithm.
+/// Logarithm of the ratio of the distances of an output triangle's far and near ends. This value gives about the fewest
+/// triangles in a plane that contains the observer.
 const STRETCHED: f64 = 1.4;
 
-/// A chart that does not fit is followed by one with so many times the power, up to this one.
+/// If a chart does not fit, the next one has the power multiplied by this factor, up to the maximum.
 const MORE_POWER: f64 = 2.0;
 const MAX_POWER: f64 = 1.0;
 
-/// A chart that does not fit is followed by one flatter by this factor where all gaps are alike.
+/// If a chart does not fit and the allowed gap is the same everywhere, the next chart's height is larger by this
+/// factor.
 const FLATTER: f64 = 4.0;
 
 impl Chart {
-    /// The first to be tried with `flattening` 0, then flatter ones; `allowed` is the smallest of what is allowed.
+    /// The chart number `flattening`: 0 is the first one to try, larger numbers are flatter. `allowed` is the smallest
+    /// allowed gap of the triangle.
     pub(super) fn new(plane: Plane, allowance: &Allowance, allowed: f64, flattening: i32) -> Self {
-        // Where the observer is in the plane every direction lies on the horizon. Any chart gives a valid mesh.
+        // For an observer in the plane every direction lies on the horizon, so the height is made larger. Any chart
+        // gives a valid mesh.
         let height = plane
             .height
             .max((2.0 * allowed * plane.nearest).sqrt())
@@ -176,7 +182,8 @@ impl Chart {
         }
     }
 
-    /// How far from the foot a place is that is so far from it in a chart with a power.
+    /// The in-plane distance from the foot, for a point whose chart coordinates have the length `radius`; the chart has
+    /// a power.
     fn distance_in_plane(&self, radius: f64) -> f64 {
         let Self {
             height,
@@ -187,7 +194,8 @@ impl Chart {
         if height < 1e-200 * reach {
             return reach * radius.powf(1.0 / power);
         }
-        // In `t` with `q = h sinh t` nothing cancels: Newton's steps where they stay between what is known, or halves.
+        // The unknown is `t` with `q = h sinh t`, because nothing cancels then. A Newton step is used if it stays
+        // between the known bounds; otherwise the interval is halved.
         let target = radius.ln() - power * (height / reach).ln();
         let (mut low, mut high) = (0.0, (2.0 * reach / height).asinh());
         let mut t: f64 = 0.5 * high;
@@ -212,7 +220,7 @@ impl Chart {
         height * t.sinh()
     }
 
-    /// How many points more than the sky asks for such a chart may take.
+    /// How many more points this chart may use than the chart of the sky.
     pub(super) fn points(&self, allowance: &Allowance) -> usize {
         let share = if self.power > 0.0 {
             POINTS_OF_POWER * self.power / self.plane.share(allowance)
@@ -225,8 +233,8 @@ impl Chart {
         share.min(MAX_MORE) as usize
     }
 
-    /// The square of the metric's factor: lengths in the chart times it are lengths in which a gap `e` is an
-    /// edge of `sqrt(8 e)`.
+    /// The square of the factor by which the gap metric stretches lengths of the chart at `w`. In the gap metric an
+    /// edge with the gap `e` has the length `sqrt(8 e)`.
     pub(super) fn metric(&self, w: DVec2) -> f64 {
         let square = w.length_squared();
         if self.power == 0.0 {
@@ -235,7 +243,7 @@ impl Chart {
         let distance = self.distance_in_plane(square.sqrt()).hypot(self.height);
         let on_sky = (distance + self.height).powi(2) / distance;
         let metric = on_sky * (self.reach / distance).powf(2.0 * self.power);
-        // Next to the foot there is nothing to be told apart.
+        // Next to the foot the chart cannot separate points.
         if metric.is_finite() {
             metric
         } else {
@@ -243,7 +251,8 @@ impl Chart {
         }
     }
 
-    /// The height that a plane would have of which theory asks for as many triangles as this chart takes at a place.
+    /// The distance that a plane would need to have from the observer so that theory asks for as many triangles as this
+    /// chart needs at `place`.
     pub(super) fn effective_height(&self, place: DVec2) -> f64 {
         let distance = place.length().hypot(self.height);
         match self.power {
@@ -253,7 +262,7 @@ impl Chart {
     }
 }
 
-/// Distance of a counter-clockwise triangle from the origin; zero inside.
+/// Distance of a counter-clockwise triangle from the origin; zero if the origin is inside.
 fn distance_from_origin(corners: [DVec2; 3]) -> f64 {
     let sides = [0, 1, 2].map(|i| (corners[i], corners[(i + 1) % 3]));
     if sides.iter().all(|(a, b)| a.perp_dot(*b) >= 0.0) {
@@ -272,7 +281,7 @@ mod tests {
     use crate::light_cone::View;
     use crate::spacetime::{Event, Velocity, WorldLine};
 
-    /// There and back, with the observer in the plane and at any distance from it.
+    /// Points go to the chart and back, with the observer in the plane and at any distance from it.
     #[test]
     fn places_are_found_again() {
         let world_line = |velocity| WorldLine {
@@ -303,7 +312,7 @@ mod tests {
                     let w = chart.place_to_chart(place);
                     assert!(w.length() < 1.0);
                     let back = chart.chart_to_place(w);
-                    // What a height hides is lost in a chart.
+                    // The chart loses digits of points that are near the foot compared with the height.
                     let digits =
                         1e-9 * (place.length() + height * 1e-6) / chart.power.clamp(1e-3, 1.0);
                     assert!(

@@ -1,40 +1,42 @@
-//! The edge rule: where an edge is divided depends on its two ends alone.
+//! The edge rule: the points that divide an edge depend on its two ends alone.
 
 use glam::DVec3;
 
 use super::{Allowance, edge_gap};
 
-/// What part of a triangle's gap its edges may have.
+/// Allowed gap of an edge as a fraction of the allowed gap of a triangle.
 ///
-/// An equilateral triangle's edge has three quarters of the gap of its middle. Less makes more triangles
-/// along the edges of the mesh than inside, more leaves those inside no room to be equilateral: 0.6 and 0.9
-/// cost 3 to 40 per cent more triangles on the plates of the benchmark.
+/// The gap of an equilateral triangle's edge is three quarters of the gap of the triangle. A smaller fraction makes
+/// smaller triangles along the edges of the mesh than inside; a larger one leaves the triangles inside no room to be
+/// equilateral. On the plates of the benchmark the fractions 0.6 and 0.9 cost 3 to 40 per cent more triangles.
 pub(super) const EDGE_SHARE: f64 = 0.75;
 
-/// Pieces of the integral along an edge; the result is checked, so that no more digits are needed.
+/// Number of pieces of the quadrature along an edge. The result is checked, so more digits are not needed.
 const SAMPLES: usize = 64;
 
-/// Whether an edge has to be divided.
+/// Whether an edge has to be divided; its ends are offsets from the observer, in the rest frame.
 pub(super) fn needs_division(a: DVec3, b: DVec3, allowance: &Allowance) -> bool {
     edge_gap(a, b) > EDGE_SHARE * allowance.between(&[a, b])
 }
 
-/// About how many pieces an edge will be divided into: the gap of a piece goes with the square of its length.
+/// About how many pieces an edge will be divided into: the gap of a piece is proportional to the square of its length.
 pub(super) fn predicted_edge_pieces(a: DVec3, b: DVec3, allowance: &Allowance) -> f64 {
     let excess = edge_gap(a, b) / (EDGE_SHARE * allowance.between(&[a, b]));
     excess.sqrt().ceil().max(1.0)
 }
 
-/// Where to divide the edge between two positions as seen by `observer`, as parameters from 0 at `a` to 1 at
-/// `b`, in order; empty where it need not be divided.
+/// Where to divide the edge between the positions `a` and `b`, as increasing parameters from 0 at `a` to 1 at `b`;
+/// empty if the edge need not be divided. All positions, also that of `observer`, are in the rest frame.
 ///
-/// The pieces have nearly equal gaps. In the line's plane with the observer, at distance `h` from it,
-/// `r'' = h^2 / r^3`, so a piece of length `L` has the gap `h^2 L^2 / (8 r^3)`: equal pieces of the integral of
-/// `h r^(-3/2)` have equal gaps, and as `s = h sinh t` turns it into that of `(cosh t)^(-1/2)`, it is smooth even
-/// where the line passes close by. The exact gap of each piece decides; if one is too large, one piece more.
+/// The pieces have nearly equal gaps. Let `h` be the distance of the edge's line from the observer and `s` the length
+/// along the line from its point nearest to the observer. The distance `r` has the second derivative `r'' = h^2 / r^3`,
+/// so a piece of length `L` has the gap `h^2 L^2 / (8 r^3)`. Pieces over which `h r^(-3/2)` has equal integrals
+/// therefore have equal gaps. The substitution `s = h sinh t` turns this integral into that of `(cosh t)^(-1/2)`, which
+/// is smooth even where the line passes close to the observer. The exact gap of each piece decides; if one is too
+/// large, the number of pieces grows.
 ///
-/// The caller gives the ends in a canonical order; the result is a function of them and nothing else, or `None` where
-/// it would have more than `most` parameters.
+/// The caller gives the ends in a canonical order, so that the result is the same for every triangle of the edge. It is
+/// `None` if more than `most` parameters would be needed.
 pub(super) fn division(
     a: DVec3,
     b: DVec3,
@@ -56,7 +58,7 @@ pub(super) fn division(
             !needs_division(std::mem::replace(&mut from, to), to, allowance)
         })
     };
-    // Most edges are short against their distance: one cut in the middle will do.
+    // Most edges are short compared with their distance: one cut in the middle is enough.
     if fits(&[0.5]) {
         return Some(vec![0.5]);
     }
@@ -73,7 +75,7 @@ pub(super) fn division(
             .iter()
             .all(|&parameter| 0.0 < parameter && parameter < 1.0);
         if !(distinct && inside) || pieces > MAX_PIECES {
-            // As fine as numbers go: the gap that is left is in the certificate.
+            // The division is as fine as `f64` or the limit allows. The certificate states the remaining gap.
             return Some(scale.parameters_within_reach(pieces));
         }
         if fits(&parameters) {
@@ -83,10 +85,10 @@ pub(super) fn division(
     }
 }
 
-/// More pieces than this are a tolerance that cannot be meant.
+/// Limit on the pieces of an edge: a tolerance that needs more cannot be intended.
 const MAX_PIECES: usize = 1 << 20;
 
-/// The point of an edge at a parameter; the ends themselves at 0 and 1.
+/// The point of an edge at a parameter; at 0 and 1 it is exactly the end.
 pub(super) fn point_between(a: DVec3, b: DVec3, parameter: f64) -> DVec3 {
     if parameter == 1.0 {
         b
@@ -95,15 +97,15 @@ pub(super) fn point_between(a: DVec3, b: DVec3, parameter: f64) -> DVec3 {
     }
 }
 
-/// The integral along an edge in which pieces of equal length have equal gaps.
+/// The integral along an edge whose equal parts belong to pieces with equal gaps.
 struct Scale {
-    /// Distance of the line from the observer, not zero.
+    /// Distance of the edge's line from the observer, in the rest frame; never zero.
     distance: f64,
-    /// Where along the line, counted from the point nearest to the observer, the edge begins.
+    /// Signed distance along the line from its point nearest to the observer to the edge's first end.
     start: f64,
-    /// How long the edge is.
+    /// Length of the edge.
     length: f64,
-    /// `asinh(s / distance)` at the ends.
+    /// `asinh(s / distance)` at the two ends, with `s` measured like `start`.
     range: [f64; 2],
     /// The integral up to each sample, `SAMPLES + 1` values.
     cumulative: Vec<f64>,
@@ -115,7 +117,7 @@ impl Scale {
         let length = edge.length();
         let along = edge / length;
         let start = a.dot(along);
-        // Where the line hits the observer any small distance stands for none: the exact gap decides.
+        // If the line passes through the observer, a small distance replaces zero: the exact gap decides later.
         let distance = a.cross(along).length().max(1e-12 * length);
         let range = [start, start + length].map(|s| (s / distance).asinh());
         let step = (range[1] - range[0]) / SAMPLES as f64;
@@ -144,7 +146,7 @@ impl Scale {
         }
     }
 
-    /// How many pieces are about enough.
+    /// About how many pieces are enough.
     fn pieces(&self) -> usize {
         let total = self.cumulative[SAMPLES] * self.distance.sqrt();
         (total / (8.0 * EDGE_SHARE).sqrt())
@@ -152,7 +154,7 @@ impl Scale {
             .min(MAX_PIECES as f64) as usize
     }
 
-    /// The inner ends of `pieces` pieces of equal integral.
+    /// The parameters that divide the edge into `pieces` pieces with equal integrals.
     fn parameters(&self, pieces: usize) -> Vec<f64> {
         let step = (self.range[1] - self.range[0]) / SAMPLES as f64;
         let mut sample = 0;
@@ -169,7 +171,7 @@ impl Scale {
             .collect()
     }
 
-    /// The same without what rounding has thrown together.
+    /// The same parameters without those that rounding has made equal or moved outside the edge.
     fn parameters_within_reach(&self, pieces: usize) -> Vec<f64> {
         let mut parameters = self.parameters(pieces);
         parameters.retain(|&parameter| 0.0 < parameter && parameter < 1.0);

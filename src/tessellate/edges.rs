@@ -1,4 +1,4 @@
-//! The edges of meshes that are divided, each once, so that all triangles of an edge agree.
+//! Division of the edges of a mesh: each edge once, so that all its triangles agree.
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -10,23 +10,24 @@ use super::Allowance;
 use super::edge::{division, needs_division};
 use crate::mesh::Mesh;
 
-/// Where a new vertex comes from.
+/// The source of a new vertex: corners of the old mesh, and weights that interpolate them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Origin {
     pub(super) corners: [u32; 3],
     pub(super) weights: DVec3,
 }
 
-/// The new vertices on the edges of a mesh.
+/// The divided edges of a mesh, and the new vertices on them.
 pub(super) struct Edges {
-    /// By the two vertices, in the order of the rule: where the edge is divided, and the first new vertex.
+    /// For each divided edge, named by its two vertices in [`canonical`] order: the parameters that divide it, and the
+    /// index of its first new vertex.
     pub(super) divisions: HashMap<[u32; 2], (Vec<f64>, u32)>,
     pub(super) origins: Vec<Origin>,
 }
 
-/// A count that many threads add to, and that must not go beyond a limit.
+/// A count to which many threads add and which must not exceed a limit.
 ///
-/// Whether it does is the same for any number of threads; where it does, who notices first is not.
+/// Whether the sum exceeds the limit does not depend on the number of threads; which thread notices it first does.
 pub(super) struct Count {
     sum: AtomicU64,
     most: u64,
@@ -40,12 +41,12 @@ impl Count {
         }
     }
 
-    /// What is left before the limit.
+    /// The remainder up to the limit.
     pub(super) fn left(&self) -> u64 {
         self.most.saturating_sub(self.sum.load(Ordering::Relaxed))
     }
 
-    /// Whether there was room for so much.
+    /// Adds to the count; whether the sum is within the limit.
     #[must_use]
     fn add(&self, count: u64) -> bool {
         let before = self.sum.fetch_add(count, Ordering::Relaxed);
@@ -53,10 +54,10 @@ impl Count {
     }
 }
 
-/// The two vertices of an edge in an order that depends on their positions: both sides of a seam have the
-/// same one.
+/// The two vertices of an edge in an order that depends on their positions, so that both sides of a seam have the same
+/// order.
 pub(super) fn canonical([a, b]: [u32; 2], positions: &[DVec3]) -> [u32; 2] {
-    // Adding zero makes one zero of the two: they are one place.
+    // Adding zero turns -0 into 0, because both are the same position.
     let key = |vertex: u32| positions[vertex as usize].to_array().map(|x| x + 0.0);
     let order = |p: [f64; 3], q: [f64; 3]| {
         p.iter()
@@ -75,8 +76,9 @@ pub(super) fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]]
 }
 
-/// Divides those edges of some triangles that have to be. Each new vertex makes one triangle more of each of the
-/// triangles that share the edge: these are counted; `None` where that is beyond the limit.
+/// Divides the edges of some triangles where the edge rule asks for it. Each new vertex adds one triangle for each
+/// triangle that shares the edge. `more` counts these additional triangles; the result is `None` if the count exceeds
+/// its limit.
 pub(super) fn divided_edges(
     mesh: &Mesh,
     looked_at: &[u32],

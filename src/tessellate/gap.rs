@@ -1,92 +1,101 @@
-//! The gap of a flat edge or triangle, in closed form and rounded up.
+//! The gap of a flat edge or triangle: a closed form, rounded up.
 //!
-//! The photosurface map is linear in the offset `d` from the observer except for a term `gamma beta r`
-//! with `r = |d|`. What an edge or a triangle misses when it is mapped by its corners alone is therefore
-//! `gamma beta` times the *gap* of the interpolated distances,
+//! The photosurface map takes the offset `d` of a point from the observer, in the rest frame, to a position in the
+//! observer's frame. The map is linear in `d` except for a term `gamma beta r` along the motion, with `r = |d|`. A flat
+//! output triangle interpolates its mapped corners linearly. At the point with the weights `lambda_i` it therefore lies
+//! beside the photosurface by `gamma beta` times the *gap* of the interpolated distances,
 //!
 //! ```text
-//! e(lambda) = sum lambda_i r_i - |sum lambda_i d_i| >= 0,
+//! e(lambda) = sum lambda_i r_i - |sum lambda_i d_i| >= 0.
 //! ```
 //!
-//! a quantity of the rest frame, zero at the corners and concave between them. Here is its maximum.
+//! The gap is a length in the rest frame. As a function of the weights it is zero at the corners and concave between
+//! them. This file computes its maximum over an edge and over a triangle. The *worst point* is the point where the gap
+//! is largest.
 //!
 //! # Derivation
 //!
-//! Take `D_i = (r_i, d_i)` as events on the light cone and `X = sum lambda_i D_i = (t, x)`. For a unit
-//! vector `G`, `t - |x| <= t - G.x = sum lambda_i (r_i - G.d_i)`, with equality where `x` points along
-//! `G`. So **every** `G` gives a bound, the largest `r_i - G.d_i`, and the one that makes all of them
-//! equal, if the place where `x` is along `G` is between the corners, gives the maximum: `e` is the
-//! number for which a light-like `K = (1, G)` with `K.D_i = e` for all `i` exists (`.` with the signature
-//! `+---`).
+//! Write the corners as events `D_i = (r_i, d_i)` on the light cone, and the interpolated point as
+//! `X = sum lambda_i D_i = (t, x)`, so that `e = t - |x|`. For every unit vector `G`,
+//! `t - |x| <= t - G.x = sum lambda_i (r_i - G.d_i)`, with equality where `x` points along `G`. Hence **every** unit
+//! vector `G` gives an upper bound: the largest of the numbers `r_i - G.d_i`. The bound is the maximum itself if `G`
+//! makes these numbers equal and if the point whose `x` points along `G` lies between the corners. The maximum is
+//! therefore the number `e` for which a light-like vector `K = (1, G)` with `K.D_i = e` for all `i` exists. The dot
+//! between such four-vectors has the signature `+---`.
 //!
-//! **Edge**, with `P = D_a.D_b = r_a r_b - a.b`: at the place `X = rho K + e (1, 0)` with `rho = |x|`,
-//! the products with `D_a` and `D_b` are `lambda_b P = e (rho + r_a)` and `lambda_a P = e (rho + r_b)`,
-//! and `X.X = 2 lambda_a lambda_b P = e (e + 2 rho)`. Hence
+//! **Edge** from `a` to `b`. Let `P = D_a.D_b = r_a r_b - a.b`, and let `rho = |x|` be the distance of the worst point,
+//! so that `X = rho K + e (1, 0)`. The products of `X` with `D_a` and `D_b` give `lambda_b P = e (rho + r_a)` and
+//! `lambda_a P = e (rho + r_b)`; the square of `X` gives `X.X = 2 lambda_a lambda_b P = e (e + 2 rho)`. Hence
 //!
 //! ```text
 //! e = P / (r_a + r_b + 2 rho),        rho = sqrt((r_a r_b + a.b) / 2).
 //! ```
 //!
-//! It has no cancellation left but in `P` and `rho`, and there `P (r_a r_b + a.b) = |a x b|^2` helps. In
-//! terms of the angle `theta` at the observer, `P = 2 r_a r_b sin^2(theta / 2)` and
-//! `rho = sqrt(r_a r_b) cos(theta / 2)`. The place always is between the ends.
+//! In this formula only `P` and `rho` can lose digits by cancellation; the identity `P (r_a r_b + a.b) = |a x b|^2`
+//! avoids the loss. With the angle `theta` between the two ends, seen from the observer,
+//! `P = 2 r_a r_b sin^2(theta / 2)` and `rho = sqrt(r_a r_b) cos(theta / 2)`. The worst point always lies between the
+//! ends.
 //!
-//! **Triangle**, with `p`, `q`, `s` the products `P` of the edges opposite `a`, `b`, `c`: split `K` into
-//! `e V` in the span of the `D_i` and a part across. `V.D_i = 1` is solved by the inverse of the matrix
-//! of the products, which gives `V.V = Delta / (2 p q s)` and `V.(1, 0)` as below; the unit vector across
-//! has the time component `T / sqrt(2 p q s)`. `K.K = 0` and `K.(1, 0) = 1` make
+//! **Triangle** with the corners `a`, `b`, `c`. Let `p`, `q`, `s` be the products `P` of the edges opposite `a`, `b`,
+//! `c`. Split `K` into a part `e V` in the span of the `D_i` and a part across that span. The inverse of the matrix of
+//! the products `D_i.D_j` solves `V.D_i = 1`; the solution has `V.V = Delta / (2 p q s)` and a component `V.(1, 0)`
+//! that is the first part of the denominator below, divided by `2 p q s`. The unit vector across the span has the time
+//! component `T / sqrt(2 p q s)`. The conditions `K.K = 0` and `K.(1, 0) = 1` then give
 //!
 //! ```text
 //! e = 2 p q s / (r_a p (q + s - p) + r_b q (s + p - q) + r_c s (p + q - s) + |T| sqrt(Delta)),
-//! Delta = 2 (p q + q s + s p) - p^2 - q^2 - s^2,        T = a.(b x c),
+//! Delta = 2 (p q + q s + s p) - p^2 - q^2 - s^2,        T = a.(b x c).
 //! ```
 //!
-//! at a place with `rho = |T| / sqrt(Delta)` and weights
-//! `lambda_a ~ p (q (r_b + rho) + s (r_c + rho) - p (r_a + rho))`. `T^2` also is
-//! `Delta(r_a p, r_b q, r_c s) - 2 p q s`, which has the digits where the triangle is small on the sky,
-//! while the triple product has them where the observer is close to its plane.
+//! The worst point has the distance `rho = |T| / sqrt(Delta)` and the weights
+//! `lambda_a ~ p (q (r_b + rho) + s (r_c + rho) - p (r_a + rho))`, and likewise for `b` and `c`. `T^2` also equals
+//! `Delta(r_a p, r_b q, r_c s) - 2 p q s`, where `Delta(x, y, z)` is the same expression in `x`, `y`, `z` instead of
+//! `p`, `q`, `s`. This second form is accurate where the triangle is small on the observer's sky; the triple product
+//! `a.(b x c)` is accurate where the observer is close to the triangle's plane.
 //!
-//! If that place is outside, the maximum is that of the edge with the largest gap. It is so exactly when
-//! the edge's own `G` gives no more for the third corner than for the edge (a concave function has one
-//! maximum), for edge `ab` when
+//! If that point lies outside the triangle, the maximum is the largest gap of an edge. This is the case exactly when
+//! the vector `G` of that edge gives the third corner no larger number `r_i - G.d_i` than the ends of the edge, because
+//! a concave function has only one maximum. For the edge `ab` the condition is
 //!
 //! ```text
 //! J = q (r_b + rho_ab) + p (r_a + rho_ab) - s (r_c + rho_ab) <= 0,
 //! r_c - G.c = e_ab + J / (rho_ab (r_a + r_b + 2 rho_ab)).
 //! ```
 //!
-//! **At most twice the edges.** Let `m` be the largest gap of an edge, so that
-//! `p <= m (r_b + r_c + 2 rho_bc)`. From `e (t + |x|) = X.X = 2 sum lambda_b lambda_c p` (the sum over the
-//! edges) follows `e <= 2 m` if `2 sum lambda_b lambda_c rho_bc <= |x| + sum lambda_a^2 r_a`. Let
-//! `S = sum lambda_b lambda_c <= 1/3` and `y_a = lambda_a r_a`. By Cauchy the square of the left is at most
-//! `4 S sum lambda_b lambda_c rho_bc^2 = S (|x|^2 + Q)`, `Q = (sum y)^2 - 2 sum y^2`. `S` and `Q` as
-//! quadratic forms of `lambda` and `y` are inverse to each other and Lorentzian, so `S Q <= (lambda.y)^2`
-//! (reverse Cauchy), and the square is at most `|x|^2 / 3 + (sum lambda_a^2 r_a)^2`. The factor 2 is
-//! attained by an equilateral triangle with the observer at its centre.
+//! **A triangle's gap is at most twice the largest gap of its edges.** Let `m` be the largest gap of an edge, so that
+//! `p <= m (r_b + r_c + 2 rho_bc)`. From `e (t + |x|) = X.X = 2 sum lambda_b lambda_c p` (a sum over the edges) follows
+//! `e <= 2 m` if `2 sum lambda_b lambda_c rho_bc <= |x| + sum lambda_a^2 r_a`. To prove this condition, let
+//! `S = sum lambda_b lambda_c <= 1/3` and `y_a = lambda_a r_a`. By the Cauchy-Schwarz inequality the square of the
+//! condition's left side is at most `4 S sum lambda_b lambda_c rho_bc^2 = S (|x|^2 + Q)` with
+//! `Q = (sum y)^2 - 2 sum y^2`. The quadratic forms `S` of `lambda` and `Q` of `y` are inverse to each other and
+//! Lorentzian, so `S Q <= (lambda.y)^2` (the reverse Cauchy-Schwarz inequality), and the square is at most
+//! `|x|^2 / 3 + (sum lambda_a^2 r_a)^2`. An equilateral triangle with the observer at its centre attains the factor 2.
 
 use glam::DVec3;
 
 const EPSILON: f64 = f64::EPSILON;
 
-/// Squares of distances between these go through the plain formulas: no product over- or underflows that
-/// counts.
+/// Range of squared distances for which the plain formulas are used: no product that affects the result overflows or
+/// underflows there.
 const PLAIN: std::ops::RangeInclusive<f64> = two_to(-200)..=two_to(200);
 
-/// An upper bound of the gap of the edge from `a` to `b`, both relative to the observer in the rest frame:
-/// of the maximum over `0 <= lambda <= 1` of
+/// An upper bound on the gap of the edge from `a` to `b`, a length in the rest frame; `a` and `b` are offsets from the
+/// observer, also in the rest frame. The gap is the maximum over `0 <= lambda <= 1` of
 /// `(1 - lambda) |a| + lambda |b| - |(1 - lambda) a + lambda b|`.
 ///
-/// The same for `(b, a)`, bit for bit.
+/// The result for `(b, a)` is the same, bit for bit.
 ///
 /// # Derivation
 ///
-/// `P / (r_a + r_b + sqrt(2 (r_a r_b + a.b)))` with `P = r_a r_b - a.b`; see the head of this file's module.
+/// The gap is `P / (r_a + r_b + sqrt(2 (r_a r_b + a.b)))` with `P = r_a r_b - a.b`; the comment at the top of this file
+/// derives it.
 ///
 /// # Accuracy
 ///
-/// `true <= result <= (1 + 32 epsilon) true + 1e-160 min(|a|, |b|) + 5e-324` for all finite offsets: the
-/// analysis of each rounding is with the code, `tests/it/tessellation/gap.rs` compares with 300 digits. Zero for an
-/// edge without length and for one that ends at the observer. NaN or infinity if a coordinate is not finite.
+/// `true <= result <= (1 + 32 epsilon) true + 1e-160 min(|a|, |b|) + 5e-324` for all finite offsets. Comments in the
+/// code bound each rounding error; `tests/it/tessellation/gap.rs` compares the results with references of 300 digits.
+/// The result is zero for an edge without length and for an edge that ends at the observer. It is NaN or infinite if a
+/// coordinate is not finite.
 pub fn edge_gap(a: DVec3, b: DVec3) -> f64 {
     let (a, b) = if before(b, a) { (b, a) } else { (a, b) };
     let (a2, b2) = (a.length_squared(), b.length_squared());
@@ -97,25 +106,28 @@ pub fn edge_gap(a: DVec3, b: DVec3) -> f64 {
     }
 }
 
-/// An upper bound of the gap of the triangle with corners `a`, `b`, `c` relative to the observer, in the
-/// rest frame: of the maximum of `sum lambda_i r_i - |sum lambda_i d_i|` over the whole triangle.
+/// An upper bound on the gap of the triangle with the corners `a`, `b`, `c`, a length in the rest frame; the corners
+/// are offsets from the observer, also in the rest frame. The gap is the maximum of
+/// `sum lambda_i r_i - |sum lambda_i d_i|` over the whole triangle.
 ///
-/// The same for the corners in any order, bit for bit, and never below [`edge_gap`] of an edge.
+/// The result is the same for the corners in any order, bit for bit, and never below [`edge_gap`] of any of the edges.
 ///
 /// # Derivation
 ///
-/// See the head of this file's module. The plane's own maximum with every rounding error counted against
-/// it, unless the maximum is certain to be on an edge; but at most what the direction from the
-/// observer to the worst place of the worst edge proves, and at most twice the worst edge's gap.
+/// The comment at the top of this file derives the formulas. If the maximum is certain to lie on an edge, the result is
+/// the gap of that edge. Otherwise it is the smallest of three upper bounds: the closed form for the triangle's plane,
+/// with every rounding error added; the bound that the vector `G` of the worst edge gives; and twice the gap of the
+/// worst edge.
 ///
 /// # Accuracy
 ///
-/// Never below the true value. Never more than `2 (1 + 32 epsilon)` times it, but for the floor of
-/// [`edge_gap`], whatever the triangle (both proven). Measured in `tests/it/tessellation/gap.rs`: above the true gap by
-/// less than 1e-12 of it for triangles with angles on the observer's sky of at least 3 degrees and distances within a
-/// factor of 10; by less than 1e-8 of it for needles, observers on or next to a corner, an edge, the face or the
-/// plane, neighbouring floats. The factor 2 is needed only where distances from the observer differ by 1e30. NaN or
-/// infinity if a coordinate is not finite.
+/// Proven for every triangle: the result is never below the true gap, and never above `2 (1 + 32 epsilon)` times the
+/// true gap, apart from the two absolute terms in the accuracy of [`edge_gap`]. Measured in
+/// `tests/it/tessellation/gap.rs`: the result exceeds the true gap by less than 1e-12 of it for triangles whose angles
+/// on the observer's sky are at least 3 degrees and whose corners' distances are within a factor of 10; and by less
+/// than 1e-8 of it for needles, for corners at neighbouring floats, and for an observer on or next to a corner, an
+/// edge, the face or the plane. The factor 2 is reached only where distances from the observer differ by a factor of
+/// 1e30. The result is NaN or infinite if a coordinate is not finite.
 pub fn triangle_gap(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let [a, b, c] = sorted([a, b, c]);
     let squares = [a, b, c].map(DVec3::length_squared);
@@ -126,11 +138,11 @@ pub fn triangle_gap(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     }
 }
 
-/// About where in the triangle the gap is largest: the weights of the corners, none negative, sum 1 but for
-/// rounding.
+/// The approximate worst point of the triangle, where the gap is largest, as the weights of the corners. No weight is
+/// negative, and the sum is 1 up to rounding.
 ///
-/// To insert a point there, not to prove anything: an approximation, best where the gap is well defined. A third each
-/// where a coordinate is not finite.
+/// The point serves for inserting a vertex and proves nothing. It is most accurate where the gap is well conditioned.
+/// If a coordinate is not finite, each weight is a third.
 pub fn triangle_gap_place(a: DVec3, b: DVec3, c: DVec3) -> [f64; 3] {
     let mut corners = [a, b, c];
     if !corners.iter().all(|corner| corner.is_finite()) {
@@ -145,7 +157,8 @@ pub fn triangle_gap_place(a: DVec3, b: DVec3, c: DVec3) -> [f64; 3] {
     }
     let distances = corners.map(DVec3::length);
     match distances.iter().position(|&r| !(r >= two_to(-90))) {
-        // Next to the observer the gap grows in proportion to the distance from that corner.
+        // A corner next to the observer: the gap grows in proportion to the distance from that corner, so the worst
+        // point lies on the opposite edge.
         Some(near) => {
             let (i, j) = ((near + 1) % 3, (near + 2) % 3);
             let mut weights = [0.0; 3];
@@ -161,29 +174,30 @@ pub fn triangle_gap_place(a: DVec3, b: DVec3, c: DVec3) -> [f64; 3] {
     }
 }
 
-/// What two ends have in common.
+/// The quantities of an edge that depend on both ends.
 ///
 /// # Rounding
 ///
-/// In units of `u = epsilon / 2` and to first order: distances 2.5; `cross` 3 in each component, so
-/// 9 in its square; `r_a r_b` 6, `a.b` 3 of `r_a r_b`, so 10 in `wide`, which is at least `r_a r_b`. The other
-/// of `P` and `2 rho^2` is 20. An acute edge has `P` to 20, `rho` to 6, its gap to 20 + 8 + 1 = 29; an obtuse
-/// one `P` to 10, `rho` to 11, its gap to 10 + 13 + 1 = 24. 15 epsilon and the rounding of the product that
-/// adds them cover both.
+/// The relative errors, in units of `u = epsilon / 2` and to first order, are at most: 2.5 for a distance; 3 for each
+/// component of `cross`, hence 9 for its square; 6 for `r_a r_b`; 3 for `a.b`, relative to `r_a r_b`; hence 10 for
+/// `wide`, which is at least `r_a r_b`. One of `P` and `2 rho^2` is `wide`; the other one is `square / wide`, with an
+/// error of 20. If the angle at the observer is acute, `P` has an error of 20, `rho` of 6, and the gap of 20 + 8 + 1 =
+/// 29. If it is obtuse, `P` has an error of 10, `rho` of 11, and the gap of 10 + 13 + 1 = 24. The factor
+/// `1 + 15 epsilon` covers both and its own rounding.
 struct Edge {
     cross: DVec3,
-    /// `P = r_a r_b - a.b`, to `10 epsilon` of itself
+    /// `P = r_a r_b - a.b`, with a relative error of at most `10 epsilon`.
     product: f64,
-    /// The distance of the worst place, to `6 epsilon` of itself
+    /// The distance of the worst point from the observer, with a relative error of at most `6 epsilon`.
     rho: f64,
-    /// Rounded up.
+    /// The gap of the edge, rounded up.
     gap: f64,
 }
 
 impl Edge {
-    /// Both distances squared in [`PLAIN`].
+    /// The squares of both distances have to be in [`PLAIN`].
     fn new(a: DVec3, r_a: f64, b: DVec3, r_b: f64) -> Self {
-        // Below this the square has lost digits; far below anything a distance's last place can show.
+        // A square below `FLOOR` has lost digits. `FLOOR` is far below one unit in the last place of any distance.
         const FLOOR: f64 = two_to(-960);
         let cross = cross(a, b);
         let square = cross.length_squared();
@@ -208,23 +222,24 @@ impl Edge {
         }
     }
 
-    /// The weights of its ends at the worst place.
+    /// The weights of the two ends at the worst point.
     fn place(&self, r_a: f64, r_b: f64) -> [f64; 2] {
         let sum = r_a + r_b + 2.0 * self.rho;
         [(r_b + self.rho) / sum, (r_a + self.rho) / sum]
     }
 }
 
-/// A triangle with all distances squared in [`PLAIN`].
+/// A triangle whose squared distances are all in [`PLAIN`].
 struct Triangle {
     corners: [DVec3; 3],
     distances: [f64; 3],
-    /// Each opposite the corner of its index.
+    /// The edge of each index is opposite the corner of that index.
     edges: [Edge; 3],
 }
 
 impl Triangle {
-    /// Bit for bit that of the same corners in another order only if they are sorted.
+    /// The corners have to be sorted: only then are the results the same, bit for bit, for any order of the caller's
+    /// corners.
     fn new(corners: [DVec3; 3], distances: [f64; 3]) -> Self {
         let edge =
             |i: usize, j: usize| Edge::new(corners[i], distances[i], corners[j], distances[j]);
@@ -247,7 +262,7 @@ impl Triangle {
         }
     }
 
-    /// `J` of the module's head for the worst edge, and the sum of the sizes of its terms.
+    /// `J` for the worst edge, as derived at the top of this file, and the sum of the absolute values of its terms.
     fn beyond_edge(&self, apex: usize) -> (f64, f64) {
         let (i, j) = others(apex);
         let rho = self.edges[apex].rho;
@@ -259,7 +274,7 @@ impl Triangle {
     fn gap(&self) -> f64 {
         let apex = self.apex();
         let edge = &self.edges[apex];
-        // Products to 20 u, distance + rho to 12 u, their product to 33 u, the sum to 35 u.
+        // Relative errors: a product has 20 u, a distance plus rho 12 u, the product of these two 33 u, the sum 35 u.
         let (beyond, size) = self.beyond_edge(apex);
         let beyond = beyond + 20.0 * EPSILON * size;
         if beyond <= 0.0 {
@@ -272,20 +287,21 @@ impl Triangle {
         } else {
             f64::INFINITY
         };
-        // In this order: a NaN is passed over.
+        // The order matters: `f64::min` passes over a NaN of `gap_of_plane`.
         self.gap_of_plane()
             .min(toward_edge)
             .min(2.0 * edge.gap)
             .max(edge.gap)
     }
 
-    /// An upper bound of the gap at the worst place in the triangle's plane, if there is one; else, or if
-    /// nothing is certain, anything.
+    /// An upper bound on the gap at the worst point of the triangle's whole plane. If there is no such point, or if
+    /// rounding leaves it uncertain, the result has no meaning and may be infinite or NaN.
     ///
     /// # Rounding
     ///
-    /// Products of edges to `20 u`, distances to `2.5 u`. A product of `n` factors adds `n u`, the sums here at
-    /// most `5 u` of the sum of the sizes of their terms. Of a difference, the error of both is taken off.
+    /// A product of an edge has a relative error of `20 u`, a distance of `2.5 u`. Multiplying `n` factors adds `n u`;
+    /// each sum here adds at most `5 u` of the sum of the absolute values of its terms. The error of both operands is
+    /// subtracted from each difference, so that the denominator is rounded down.
     fn gap_of_plane(&self) -> f64 {
         let [p, q, s] = [0, 1, 2].map(|i: usize| self.edges[i].product);
         let [r_a, r_b, r_c] = self.distances;
@@ -293,22 +309,23 @@ impl Triangle {
         if largest < two_to(-400) {
             return f64::INFINITY;
         }
-        // 45 u of the square of the sum.
+        // The error of `delta` is at most 45 u of the square of the sum.
         let sum = p + q + s;
         let delta = delta(p, q, s) - 24.0 * EPSILON * (sum * sum);
         let product = 2.0 * (p * q) * s;
 
-        // 52 u of the square of the sum, 63 u of the product, which is not larger.
+        // The errors are at most 52 u of the square of the sum and 63 u of the product, which is not larger than that
+        // square.
         let (x, y, z) = (r_a * p, r_b * q, r_c * s);
         let sum = x + y + z;
         let from_edges = self::delta(x, y, z) - product - 64.0 * EPSILON * (sum * sum);
-        // 6 u of the sum of sizes.
+        // The error is at most 6 u of the sum of the absolute values of the terms.
         let (a, cross) = (self.corners[0], self.edges[0].cross);
         let from_corners =
             a.dot(cross).abs() - (4.0 * EPSILON * a.abs().dot(cross.abs()) + two_to(-800));
         let triple = from_edges.max(0.0).sqrt().max(from_corners);
 
-        // Each term to 50 u of its size, their sum to 55 u.
+        // Each term has an error of at most 50 u of its absolute value, their sum of at most 55 u of `size`.
         let narrow = x * (q + s - p) + y * (s + p - q) + z * (p + q - s);
         let size = x * (q + s + p) + y * (s + p + q) + z * (p + q + s);
         let across = delta.max(0.0).sqrt() * triple * (1.0 - 4.0 * EPSILON);
@@ -356,10 +373,10 @@ fn others(corner: usize) -> (usize, usize) {
     ((corner + 1) % 3, (corner + 2) % 3)
 }
 
-/// [`edge_gap`] at distances beyond [`PLAIN`], in this order of the ends.
+/// [`edge_gap`] for squared distances outside [`PLAIN`]; the ends are already in order.
 ///
-/// `P` and `rho^2` are bilinear: each end is brought to unit size by itself, the smaller one shrunk again
-/// where it stands beside the larger.
+/// `P` and `rho^2` are bilinear in the two ends, so each end is scaled to unit size on its own. In sums with the larger
+/// end, the smaller one is scaled back.
 #[cold]
 fn far_edge_gap(a: DVec3, b: DVec3) -> f64 {
     if !(a.is_finite() && b.is_finite()) {
@@ -378,21 +395,24 @@ fn far_edge_gap(a: DVec3, b: DVec3) -> f64 {
     let below = shrunk(r_a, exponent_a)
         + shrunk(r_b, exponent_b)
         + 2.0 * unit.rho * times_two_to(1.0, smaller - larger).sqrt();
-    // Not `unit.product` of equal directions at different distances: that is the floor, which is right here.
+    // Ends with equal directions but different distances have a product `P` of zero. `unit.product` is its floor then,
+    // which is the right bound here.
     let gap = unit.product / below * (1.0 + 16.0 * EPSILON);
     times_two_to(gap, smaller).next_up().min(ceiling)
 }
 
-/// A gap that an edge far away against its length does not reach; infinity for one that is not.
+/// An upper bound on the gap of an edge that is far from the observer compared with its length; infinity for any other
+/// edge.
 ///
-/// No second derivative of the distance `r` along the edge is larger than `1/r`, which makes `length^2 / 8` over the
-/// smallest `r`. It has no floor: at 1e300 that of the closed form is larger than most scenes.
+/// The second derivative of the distance `r` along the edge is nowhere larger than `1/r`, so the gap is at most
+/// `length^2 / (8 r)` with the smallest `r`. This bound has no floor: at a distance of 1e300 the floor of the closed
+/// form is larger than most scenes.
 fn far_ceiling(a: DVec3, b: DVec3) -> f64 {
     let along = b - a;
     let exponent = exponent(along);
     let length = times_two_to(scaled(along, -exponent).length(), exponent);
     let nearest = a.abs().max_element() - length;
-    // Written so that what overflows has none.
+    // Written so that a length that overflows gives infinity.
     if nearest > 0.5 * a.abs().max_element() {
         (length * (length / (8.0 * nearest)) * (1.0 + 16.0 * EPSILON)).next_up()
     } else {
@@ -400,11 +420,11 @@ fn far_ceiling(a: DVec3, b: DVec3) -> f64 {
     }
 }
 
-/// [`triangle_gap`] at distances beyond [`PLAIN`], of sorted corners.
+/// [`triangle_gap`] for squared distances outside [`PLAIN`]; the corners are sorted.
 ///
-/// Brought to unit size. If a corner then is still as good as at the observer, it counts as there: that moves
-/// the gap by at most twice its distance, and a triangle with a corner at the observer has the gap of
-/// the edge opposite.
+/// The triangle is scaled to unit size. If a corner is still too near to the observer for the plain formulas, it is
+/// treated as if it were at the observer: this changes the gap by at most twice the corner's distance, and a triangle
+/// with a corner at the observer has the gap of the opposite edge.
 #[cold]
 fn far_triangle_gap(corners: [DVec3; 3]) -> f64 {
     let [a, b, c] = corners;
@@ -434,7 +454,7 @@ fn far_triangle_gap(corners: [DVec3; 3]) -> f64 {
     gap.min(2.0 * edges).max(edges)
 }
 
-/// The distance of the corner nearest to the observer, rounded up.
+/// An upper bound on the distance of the corner nearest to the observer.
 fn nearest(corners: [DVec3; 3]) -> f64 {
     corners
         .map(|corner| 1.8 * corner.abs().max_element())
@@ -442,10 +462,11 @@ fn nearest(corners: [DVec3; 3]) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// `a x b`, each component to 3 `u` of itself.
+/// The cross product `a x b`; each component has a relative error of at most 3 `u`.
 ///
-/// Kahan's determinant; without a fused multiply-add, which is slow where the processor has none. Jeannerod,
-/// Louvet, Muller, Math. Comp. 82 (2013), 2245: 1.5 units in the last place.
+/// Each component is a determinant by Kahan's method, written without a fused multiply-add, which is slow where the
+/// processor has none. The error is at most 1.5 units in the last place (Jeannerod, Louvet, Muller, Math. Comp. 82
+/// (2013), 2245).
 fn cross(a: DVec3, b: DVec3) -> DVec3 {
     let difference = |x: f64, y: f64, z: f64, w: f64| {
         let (left, left_rest) = two_product(x, y);
@@ -459,7 +480,7 @@ fn cross(a: DVec3, b: DVec3) -> DVec3 {
     )
 }
 
-/// A product and what its rounding left out (Dekker 1971).
+/// A rounded product and its exact rounding error (Dekker 1971).
 fn two_product(x: f64, y: f64) -> (f64, f64) {
     let halves = |x: f64| {
         let shifted = 134_217_729.0 * x;
@@ -472,7 +493,7 @@ fn two_product(x: f64, y: f64) -> (f64, f64) {
     (product, rest)
 }
 
-/// An order of places: by x, then y, then z.
+/// Whether `a` precedes `b`, ordered by x, then y, then z.
 fn before(a: DVec3, b: DVec3) -> bool {
     if a.x != b.x {
         a.x < b.x
@@ -496,13 +517,13 @@ fn sorted([mut a, mut b, mut c]: [DVec3; 3]) -> [DVec3; 3] {
     [a, b, c]
 }
 
-/// `2^n` for a normal number.
+/// `2^n`, if that is a normal number.
 const fn two_to(n: i32) -> f64 {
     assert!(n > -1023 && n < 1024);
     f64::from_bits(((1023 + n) as u64) << 52)
 }
 
-/// The exponent of the largest component of a vector that is not zero.
+/// The binary exponent of the largest component of a nonzero vector.
 pub(super) fn exponent(v: DVec3) -> i32 {
     let largest = v.abs().max_element();
     let of_normal = |x: f64| (x.to_bits() >> 52) as i32 - 1023;

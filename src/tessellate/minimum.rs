@@ -1,4 +1,4 @@
-//! The fewest triangles that theory allows for a tolerance, and about how many it will take.
+//! The fewest triangles that theory allows for a tolerance, and about how many the program will make.
 
 use glam::DVec3;
 
@@ -7,45 +7,48 @@ use super::edge::predicted_edge_pieces;
 use super::gap::{exponent, scaled, times_two_to};
 use super::{Allowance, triangle_gap};
 
-/// `1.5 sqrt(3)`: an equilateral triangle whose middle has the gap `e` has the area `1.5 sqrt(3) e` in the metric
-/// in which gaps are measured.
+/// `1.5 sqrt(3)`: an equilateral triangle with the gap `e` at its middle has the area `1.5 sqrt(3) e` in the gap metric
+/// (see [`minimum_triangles`]).
 pub(super) const AREA_OF_GAP: f64 = 2.598_076_211_353_316;
 
-/// Where a triangle is smaller than this against its distance, one quadrature is enough.
+/// For a triangle whose longest side is less than this fraction of its distance, a single quadrature is enough.
 const SMALL: f64 = 0.5;
 
-/// Away from boundaries refinement makes about this many times as many triangles as theory asks for.
+/// Away from the boundary refinement makes about this many times the number of triangles that theory asks for.
 const TYPICAL_RATIO: f64 = 1.1;
 
-/// In charts that are flatter than the sky it makes about this many times as many as their metric asks for: 1.2 to 1.7.
+/// In charts flatter than the sky refinement makes about this many times the number of triangles that the chart's
+/// metric asks for; measured: 1.2 to 1.7.
 const FLAT_RATIO: f64 = 1.6;
 
-/// Against a triangle that reaches the observer: halving stops here, where next to nothing is left.
+/// Limit on the halvings of a triangle that reaches the observer; the remaining piece contributes almost nothing.
 const MAX_HALVINGS: u32 = 60;
 
-/// A triangle that is so many times as long as wide, and far enough away for its width not to matter, is as good as a
-/// line of varying width. Halves of slivers would be slivers beside each other, and their number would grow and grow.
+/// A triangle with at least this ratio of length to width, and far enough from the observer, is integrated as a line of
+/// varying width. Halving it would only give more slivers side by side, without end.
 const SLIVER: f64 = 1000.0;
 
-/// How many times its width a sliver is away for that.
+/// Smallest distance of such a sliver from the observer, in units of its width.
 const FAR: f64 = 16.0;
 
-/// Halves of a line near the observer: as many as there are exponents.
+/// Limit on the halvings of a line near the observer: the number of exponents of `f64`.
 const MAX_HALVINGS_OF_LINE: u32 = 1100;
 
-/// The integral of `h / (r^2 allowed)` over a triangle of offsets from the observer, divided by `1.5 sqrt(3)`: the
-/// fewest triangles, for small tolerance, that keep the gap `e` below what is allowed there.
+/// The fewest triangles, for a small tolerance, that keep the gap `e` of each within the allowance: the integral of
+/// `h / (r^2 allowed)` over the triangle, divided by `1.5 sqrt(3)`. The corners are offsets from the observer in the
+/// rest frame; `h` is the distance of the triangle's plane, `r` that of a point, `allowed` the allowed gap there.
 ///
 /// # Derivation
 ///
-/// The second derivative of `r` along `v` is `|v_across|^2 / r`: gaps are measured by the metric `r` times that
-/// of the sky, whose area element is `h / r^2 dA` for a plane at distance `h`. No triangle of one gap has more
-/// area in it than the equilateral one.
+/// The second derivative of `r` along a vector `v` is `|v_across|^2 / r`, where `v_across` is the part of `v` across
+/// the line of sight. The *gap metric*, which measures gaps, is therefore `r` times the metric of the sky; for a plane
+/// at the distance `h` its area element is `h / r^2 dA`. Among triangles with the same gap the equilateral one has the
+/// largest area in this metric.
 ///
 /// # Accuracy
 ///
-/// About three digits (quadrature of degree 2 on pieces smaller than half their distance), for triangles of any size.
-/// Zero where a coordinate is not finite: of those nothing is known.
+/// The result has about three correct digits for triangles of any size: the quadrature has degree 2 on pieces smaller
+/// than half their distance. It is zero if a coordinate is not finite.
 pub(crate) fn minimum_triangles(offsets: [DVec3; 3], allowance: &Allowance) -> f64 {
     let largest = offsets.iter().fold(0.0, |largest: f64, offset| {
         largest.max(offset.abs().max_element())
@@ -53,11 +56,12 @@ pub(crate) fn minimum_triangles(offsets: [DVec3; 3], allowance: &Allowance) -> f
     if !(largest > 0.0 && offsets.iter().all(|offset| offset.is_finite())) {
         return 0.0;
     }
-    // The integral goes with the size. Brought to unit size neither squares nor sums overflow, which would be halved
-    // for ever.
+    // The integral is proportional to the size. At unit size neither squares nor sums overflow; an overflow would make
+    // the halving endless.
     let exponent = exponent(DVec3::splat(largest));
     let [a, b, c] = offsets.map(|offset| scaled(offset, -exponent));
-    // h dA is the triple product over 2, whatever piece of the triangle is taken: 6 volumes.
+    // h times twice the area is the triple product of the corners, 6 times the volume of the tetrahedron with the
+    // observer. It is divided among pieces of the triangle in proportion to their areas.
     let twice_area = (b - a).cross(c - a);
     let height_times_twice_area = a.dot(twice_area).abs();
     if height_times_twice_area == 0.0 {
@@ -75,10 +79,11 @@ pub(crate) fn minimum_triangles(offsets: [DVec3; 3], allowance: &Allowance) -> f
     }
 }
 
-/// About how many triangles one will be divided into.
+/// About how many triangles a triangle will be divided into; the corners are offsets from the observer in the rest
+/// frame.
 ///
-/// A polygon with `b` points on its boundary and `i` inside is made of `b - 2 + 2 i` triangles: the boundary's share
-/// is known, and inside there are about as many triangles as theory asks for.
+/// A polygon with `b` points on its boundary and `i` points inside has `b - 2 + 2 i` triangles. The number `b` is
+/// known; the points inside add about as many triangles as theory asks for.
 pub(crate) fn predicted_pieces(offsets: [DVec3; 3], allowance: &Allowance) -> f64 {
     let [a, b, c] = offsets;
     let sides = [(a, b), (b, c), (c, a)];
@@ -92,9 +97,9 @@ pub(crate) fn predicted_pieces(offsets: [DVec3; 3], allowance: &Allowance) -> f6
     boundary.iter().sum::<f64>() - 2.0 + inside
 }
 
-/// About how many triangles more points inside will make of one that is to be divided, of which theory asks for
-/// `minimum`: about so many, or what a chart takes that is flatter than the sky, as it is where the observer is in the
-/// triangle's plane or next to it.
+/// About how many triangles the points inside add when a triangle is divided. Usually this is about `minimum`, the
+/// number that theory asks for. If the observer is in the triangle's plane or next to it, it is the number that a chart
+/// flatter than the sky needs.
 pub(super) fn pieces_inside(offsets: [DVec3; 3], minimum: f64, allowance: &Allowance) -> f64 {
     let inside = TYPICAL_RATIO * minimum;
     let Some(plane) = Plane::new(offsets) else {
@@ -120,7 +125,7 @@ pub(super) fn pieces_inside(offsets: [DVec3; 3], minimum: f64, allowance: &Allow
     if !(largest > 0.0 && offsets.iter().all(|offset| offset.is_finite())) {
         return inside;
     }
-    // As for the minimum: at unit size nothing overflows, and the size goes out.
+    // As in `minimum_triangles`, nothing overflows at unit size; here the size cancels.
     let exponent = exponent(DVec3::splat(largest));
     let [a, b, c] = offsets.map(|offset| scaled(offset, -exponent));
     let area = 0.5 * (b - a).cross(c - a).length();
@@ -128,7 +133,7 @@ pub(super) fn pieces_inside(offsets: [DVec3; 3], minimum: f64, allowance: &Allow
     FLAT_RATIO * area / AREA_OF_GAP * mean_inverse_square([a, b, c], 0, &weight)
 }
 
-/// The mean of `weight / r^2` over a triangle.
+/// The mean of `weight / r^2` over a triangle; `r` is the distance from the observer at the origin.
 fn mean_inverse_square([a, b, c]: [DVec3; 3], halvings: u32, weight: &dyn Fn(DVec3) -> f64) -> f64 {
     let edges =
         [(a, b, c), (b, c, a), (c, a, b)].map(|(p, q, r)| ((q - p).length_squared(), p, q, r));
@@ -139,7 +144,7 @@ fn mean_inverse_square([a, b, c]: [DVec3; 3], halvings: u32, weight: &dyn Fn(DVe
     let nearest = middles
         .iter()
         .fold(f64::INFINITY, |r, m| r.min(m.length_squared()));
-    // Also where a coordinate is not a number, which would be halved for ever.
+    // This branch also ends the recursion where a coordinate is NaN.
     if !(longest.0 > SMALL * SMALL * nearest) || halvings == MAX_HALVINGS {
         let floor = f64::MIN_POSITIVE.sqrt();
         return middles
@@ -155,7 +160,7 @@ fn mean_inverse_square([a, b, c]: [DVec3; 3], halvings: u32, weight: &dyn Fn(DVe
         let length = longest.sqrt();
         let along = (q - p) / length;
         let at = -p.dot(along);
-        // Next to an end the foot is known no better than to a rounding of the whole length.
+        // Next to an end, the foot of the perpendicular has a rounding error relative to the whole length.
         let foot = p + along * at.clamp(0.0, length);
         let nearest = [q, foot].into_iter().fold(p, |nearest, place| {
             let is_nearer = place.length_squared() < nearest.length_squared();
@@ -165,17 +170,18 @@ fn mean_inverse_square([a, b, c]: [DVec3; 3], halvings: u32, weight: &dyn Fn(DVe
         if distance > FAR * width {
             return mean_inverse_square_of_sliver(p, q, r, weight);
         }
-        // All but what is near the observer is cut off at once.
+        // One cut separates the part near the observer from the rest.
         let near = 2.0 * (FAR * width + distance);
         m = nearest + along * near.copysign(0.5 * length - at);
-        // Either by itself: one of them may be next to nothing.
+        // Each part is computed on its own, because one of them may be tiny.
         parts = [(m - p).length() / length, (q - m).length() / length];
     }
     parts[0] * mean_inverse_square([p, m, r], halvings + 1, weight)
         + parts[1] * mean_inverse_square([m, q, r], halvings + 1, weight)
 }
 
-/// The same over a triangle whose longest edge goes from `p` to `q`, where the third corner is next to that edge.
+/// The mean of `weight / r^2` over a sliver: its longest edge goes from `p` to `q`, and the third corner `r` is next to
+/// that edge.
 fn mean_inverse_square_of_sliver(
     p: DVec3,
     q: DVec3,
@@ -185,12 +191,13 @@ fn mean_inverse_square_of_sliver(
     let along = q - p;
     let part = ((r - p).dot(along) / along.length_squared()).clamp(0.0, 1.0);
     let foot = p + along * part;
-    // The width grows from nothing to that at the third corner, and falls again; its mean is half the largest.
+    // The width grows from zero to its largest value at the third corner, and falls to zero again. Its mean is half the
+    // largest value, so that the widths 0 and 2 have the mean 1.
     part * mean_along([p, foot], [0.0, 2.0], 0, weight)
         + (1.0 - part) * mean_along([foot, q], [2.0, 0.0], 0, weight)
 }
 
-/// The mean of `width weight / r^2` over a line, with a width that goes evenly from one value to another.
+/// The mean of `width weight / r^2` over a line from `p` to `q`, along which the width changes linearly.
 fn mean_along(
     [p, q]: [DVec3; 2],
     [from, to]: [f64; 2],
@@ -218,7 +225,7 @@ mod tests {
 
     use super::*;
 
-    /// Halves of slivers were halved into slivers side by side, a million of them for one facet.
+    /// In the past slivers were halved into slivers side by side, a million of them for one facet.
     #[test]
     fn slivers_take_few_pieces_and_have_the_minimum_of_the_closed_form() {
         // A strip from -1 to 1 of width w at distance d: the mean of 1 / r^2 is atan(1 / d) / d.
@@ -247,8 +254,8 @@ mod tests {
 
     #[test]
     fn a_plate_has_the_minimum_of_the_closed_form() {
-        // A disc sector cannot be had; the square of side 2 at distance h, by its integral in polar form:
-        // 8 * integral over 0..45 degrees of h / 2 ln(1 + 1 / (h cos)^2).
+        // The reference for a square of side 2 at distance h is its integral in polar form: 8 * integral over 0..45
+        // degrees of h / 2 ln(1 + 1 / (h cos)^2).
         for h in [1.0f64, 0.1, 0.01, 0.001] {
             let steps = 20_000;
             let expected: f64 = (0..steps)
@@ -274,7 +281,7 @@ mod tests {
         }
     }
 
-    /// Squares of these overflowed, the sums of the largest too: NaN was halved 2^60 times.
+    /// In the past squares of such coordinates overflowed, and sums of the largest ones too: NaN was halved 2^60 times.
     #[test]
     fn the_minimum_goes_with_the_size_of_a_triangle() {
         let corners = [
@@ -312,7 +319,8 @@ mod tests {
         );
     }
 
-    /// Next to the plane of a triangle squares overflowed as well: halves of what is not a number were halved again.
+    /// In the past squares also overflowed for an observer next to the triangle's plane, and NaN was halved again and
+    /// again.
     #[test]
     fn pieces_in_flat_charts_go_with_the_size_of_a_triangle() {
         let corners = [
@@ -340,7 +348,7 @@ mod tests {
         };
         mean_inverse_square([DVec3::NAN, DVec3::X, DVec3::Y], 0, &count);
         assert_eq!(taken.get(), 3);
-        // Beyond what any chart holds it ends all the same.
+        // The computation ends even for a size that no chart can represent.
         pieces(2f64.powi(1010));
     }
 

@@ -1,12 +1,13 @@
-//! Enough triangles, and hardly more: meshes at rest refined so that their photosurfaces are within a
-//! tolerance of the true ones.
+//! Refinement of meshes at rest, so that their photosurfaces are within a tolerance of the true ones, with hardly more
+//! triangles than theory requires.
 //!
-//! When the corners of a flat triangle are mapped and joined by a flat triangle, that lies beside the true
-//! photosurface by `gamma beta e` along the motion, `e = sum lambda_i r_i - |sum lambda_i d_i|` (`gap`). In the
-//! sky that an observer at rest with the object sees, all triangles of one size *on the sky*, weighted by
-//! their distance, have one gap; so the cheapest mesh is a Delaunay triangulation of near-equilateral
-//! triangles on the sky (`sky`). Edges are divided by a rule that knows nothing but their two ends (`edge`), so
-//! that neighbours always agree, bit for bit.
+//! The program maps the corners of a flat triangle and joins them by a flat output triangle. In the observer's frame
+//! the output triangle lies beside the true photosurface by `gamma beta e` along the motion, with the rest-frame gap
+//! `e = sum lambda_i r_i - |sum lambda_i d_i|` (`gap`). Consider the sky of an observer at the same point who is at
+//! rest with the object. All triangles that have one size on this sky, with lengths weighted by the square root of
+//! their distance, have the same gap. The cheapest mesh is therefore a Delaunay triangulation on the sky with nearly
+//! equilateral triangles (`sky`). The rule that divides an edge depends on its two ends only (`edge`), so that
+//! neighbouring triangles always agree, bit for bit.
 
 mod allowance;
 mod along;

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-/// The point nearest to the origin of the triangle with these corners, to rounding; a corner of a triangle that has no
-/// area to speak of.
+/// The point of the triangle with these corners that is nearest to the origin, up to rounding. For a triangle that is
+/// too thin to have a normal, the point is on one of its edges.
 pub(crate) fn nearest_point([a, b, c]: [DVec3; 3]) -> DVec3 {
     let on_edge = |(from, to): (DVec3, DVec3)| {
         let along = to - from;

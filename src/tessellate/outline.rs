@@ -1,4 +1,4 @@
-//! What is decided before any triangle is looked into: how loose the aim has to be, which edges are divided, and what
+//! The decisions before any triangle is divided: how much the allowance is loosened, which edges are divided, and what
 //! each triangle needs.
 
 use glam::DVec3;
@@ -10,41 +10,44 @@ use super::survey::Survey;
 use super::{Allowance, minimum_triangles, triangle_gap};
 use crate::mesh::Mesh;
 
-/// A single triangle is never given more points than this many times what theory asks for, and a few.
+/// Limit on the points inside one triangle, in units of the number of triangles that theory asks for (a few more are
+/// allowed).
 const MAX_TIMES_MINIMUM: f64 = 16.0;
 
-/// More points than this inside one triangle are a tolerance that cannot be meant: behind a fast observer the fewest
-/// triangles that theory allows go with `gamma`.
+/// Absolute limit on the points inside one triangle: a tolerance that needs more cannot be intended. Behind a fast
+/// observer the fewest triangles that theory allows are proportional to `gamma`.
 const MAX_POINTS: f64 = 4_194_304.0;
 
-/// Where a limit leaves too little for what is allowed, so many times as much is; then twice that factor, and so on.
+/// If the limit on triangles is too small for the allowance, the allowance is multiplied by this factor; if that does
+/// not suffice, by a factor twice as large, and so on.
 const LOOSER: f64 = 4.0;
 
-/// Where that has gone so far, edges stay whole.
+/// Beyond this factor edges are not divided at all.
 const LOOSEST: f64 = 1e300;
 
-/// Then it goes back by halves of its logarithm, until so much of the limit is used, or so many times.
+/// After that the factor shrinks again by halving of its logarithm, until this fraction of the limit is used, or for at
+/// most `MAX_HALVINGS` times.
 const USED: f64 = 0.7;
 const MAX_HALVINGS: usize = 8;
 
-/// What is decided before any triangle is looked into.
+/// The decisions before any triangle is divided.
 pub(super) struct Outline {
-    /// What is aimed at: so many times what is allowed.
+    /// The factor by which the caller's allowance was multiplied; 1 if the limit leaves enough.
     pub(super) looser: f64,
     pub(super) allowance: Allowance,
-    /// Of each mesh.
+    /// The divided edges of each mesh.
     pub(super) edges: Vec<Edges>,
-    /// Of each of the triangles of each mesh that were looked at.
+    /// For each mesh the needs of the triangles in its survey's list `above`.
     pub(super) needs: Vec<Vec<Need>>,
-    /// How many triangles more there may be inside.
+    /// How many additional triangles the points inside may make.
     pub(super) more: u64,
-    /// How many more are predicted inside.
+    /// How many additional triangles are predicted from points inside.
     inside: f64,
 }
 
 impl Outline {
-    /// With the allowance, or one so much larger that edges and what is predicted inside are within the limit, and hardly
-    /// larger than that takes.
+    /// The outline for the allowance, or for a larger one with which the divided edges and the predicted points inside
+    /// make at most `most_more` additional triangles. The allowance is hardly larger than necessary.
     pub(super) fn within(
         meshes: &[&Mesh],
         found: &[Survey],
@@ -66,7 +69,7 @@ impl Outline {
             if outline.looser == 1.0 || outline.used(most_more) >= USED * most_more as f64 {
                 break;
             }
-            // The roots first: the product might overflow.
+            // The roots are taken first, because the product might overflow.
             let between = too_tight.sqrt() * outline.looser.sqrt();
             match aiming(between) {
                 Some(tighter) => outline = tighter,
@@ -76,7 +79,7 @@ impl Outline {
         outline
     }
 
-    /// With so many times the allowance; `None` where that is beyond the limit.
+    /// The outline for the allowance multiplied by `looser`; `None` if it exceeds the limit.
     fn aiming(
         looser: f64,
         meshes: &[&Mesh],
@@ -120,12 +123,12 @@ impl Outline {
         })
     }
 
-    /// How many triangles more are predicted, on edges and inside.
+    /// How many additional triangles are predicted, from points on edges and inside.
     fn used(&self, most_more: u64) -> f64 {
         (most_more - self.more) as f64 + self.inside
     }
 
-    /// The triangles of all meshes that have to be divided, in their order.
+    /// The triangles of all meshes that have to be divided, in the order of the meshes and of their triangles.
     pub(super) fn divided(&self, found: &[Survey]) -> Vec<Divided> {
         let meshes = self.needs.iter().zip(found).enumerate();
         meshes
@@ -146,16 +149,16 @@ pub(super) struct Divided {
     pub(super) need: Need,
 }
 
-/// What a triangle needs.
+/// The needs of one triangle of the survey's list `above`.
 #[derive(Clone, Copy)]
 pub(super) struct Need {
-    /// Whether it has to be divided at all.
+    /// Whether the triangle has to be divided at all.
     pub(super) is_divided: bool,
-    /// Its gap as it is.
+    /// The gap of the undivided triangle, in the rest frame.
     pub(super) gap: f64,
-    /// The fewest triangles by theory.
+    /// The fewest triangles that theory allows for it.
     minimum: f64,
-    /// About how many triangles more there will be of points inside.
+    /// About how many additional triangles the points inside will make.
     pub(super) inside: f64,
 }
 
@@ -189,7 +192,8 @@ impl Need {
         }
     }
 
-    /// Of points inside that are spent on it, even without any limit.
+    /// Limit on the points inside the triangle if the number of all triangles is not limited; `boundary` is the number
+    /// of points on its boundary.
     pub(super) fn max_points(&self, boundary: usize) -> usize {
         let most = MAX_TIMES_MINIMUM * (self.minimum + boundary as f64) + 64.0;
         most.min(MAX_POINTS) as usize

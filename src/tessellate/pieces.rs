@@ -1,29 +1,30 @@
-//! What a triangle is divided into.
+//! The points and output triangles into which a source triangle is divided.
 
 use glam::DVec3;
 
-/// A point on the boundary of the triangle, or inside.
+/// A point on the boundary of the source triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
-    /// Weights of the triangle's corners.
+    /// Weights of the source triangle's corners.
     pub(super) weights: DVec3,
-    /// Offset from the observer.
+    /// Offset from the observer, in the rest frame.
     pub(super) offset: DVec3,
-    /// Bit `i` for a point on the side from corner `i` to the next; corners have two.
+    /// Bit `i` is set if the point is on the side from corner `i` to the next corner; a corner has two bits.
     pub(super) sides: u8,
 }
 
-/// What a triangle was divided into.
+/// The pieces of a divided source triangle.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pieces {
-    /// Weights of the points inside; they follow those of the boundary.
+    /// Weights of the source triangle's corners at each point inside. In `triangles` the points inside follow those on
+    /// the boundary.
     pub(super) inside: Vec<DVec3>,
-    /// Triangles between the points of the boundary, in their order, and those inside.
+    /// Output triangles, as indices of the points on the boundary, in their order, and then of the points inside.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// The largest gap of any of them.
+    /// The largest gap of an output triangle, in the rest frame.
     pub(super) gap: f64,
-    /// Whether every gap is within what is allowed.
+    /// Whether the gap of every output triangle is within the allowance.
     pub(super) complete: bool,
-    /// Whether more points would have been added if more had been granted.
+    /// Whether more points would have been added if the grant had been larger.
     pub(super) is_short: bool,
 }

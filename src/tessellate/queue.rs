@@ -1,29 +1,30 @@
-//! A queue of faces that have to be divided, those of the least flaw first.
+//! A queue of the faces that have to be divided; the face with the smallest flaw comes first.
 
-/// Flaws between a power of two and the next are told apart in this many steps, as the first bits of a float.
+/// The interval from a power of two to the next has `2^STEP_BITS` buckets, selected by the first bits of a float's
+/// fraction.
 const STEP_BITS: u32 = 5;
 
-/// Smaller flaws are all alike.
+/// All flaws smaller than this share the first bucket.
 const MIN: f32 = 1.0 / 16_777_216.0;
 
-/// So are those larger than that by so many powers of two.
+/// Number of powers of two above `MIN` that have buckets; all larger flaws share the last bucket.
 const OCTAVES: usize = 32;
 
 const BUCKETS: usize = OCTAVES << STEP_BITS;
 
 const NONE: u32 = u32::MAX;
 
-/// Faces in buckets of nearly equal flaw; of one bucket, the last comes first.
+/// Faces in buckets of nearly equal flaws; within one bucket the face that was added last comes first.
 ///
-/// A binary heap jumps to and fro in memory: the last face of a bucket is next to the one before, there too. The buckets are lists in one place, so that a queue for a few faces costs
-/// little.
+/// A binary heap would jump to and fro in memory, whereas consecutive faces of a bucket are usually neighbours in
+/// memory too. The buckets are linked lists in a single vector, so that a queue for a few faces costs little.
 pub(super) struct Queue {
-    /// A bit for every bucket that holds something.
+    /// One bit for each bucket, set if the bucket is not empty.
     filled: [u64; BUCKETS / 64],
-    /// The first entry of each bucket.
+    /// Index of the first entry of each bucket, or `NONE`.
     first: [u32; BUCKETS],
     entries: Vec<Queued>,
-    /// The first of the entries that hold nothing.
+    /// Index of the first unused entry, or `NONE`.
     free: u32,
 }
 
@@ -37,7 +38,7 @@ struct Queued {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Task {
     pub(super) face: u32,
-    /// How far it is from what is wanted, as a part of that.
+    /// Relative deviation of the face from the wanted one (see `Front::flaw` in `sky`).
     pub(super) flaw: f32,
 }
 
@@ -87,7 +88,7 @@ impl Queue {
     }
 }
 
-/// The bits of positive floats are in the order of the floats.
+/// The bucket of a flaw. The bits of positive floats, read as integers, have the order of the floats.
 fn bucket(flaw: f32) -> usize {
     let step = |flaw: f32| (flaw.to_bits() >> (f32::MANTISSA_DIGITS - 1 - STEP_BITS)) as usize;
     (step(flaw.max(MIN)) - step(MIN)).min(BUCKETS - 1)
@@ -108,7 +109,7 @@ mod tests {
             });
         }
         let mut faces = vec![];
-        // One that goes in between, into the place of one that went out.
+        // A face is added between others and reuses the entry of a face that was removed.
         let first = queue.pop().map(|task| task.face);
         assert_eq!(first, Some(5));
         queue.push(Task {

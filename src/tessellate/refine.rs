@@ -1,4 +1,4 @@
-//! Whole meshes refined: edges first, each once, then triangles, each by itself.
+//! Refinement of whole meshes: first each edge once, then each triangle on its own.
 
 use glam::{DVec3, DVec4, Vec2, Vec4};
 use rayon::prelude::*;
@@ -13,29 +13,31 @@ use super::sky::{Grant, divide};
 use super::survey::{Survey, survey};
 use crate::mesh::Mesh;
 
-/// A mesh refined, and how well.
+/// A refined mesh and its largest gap.
 #[derive(Clone, Debug)]
 pub(crate) struct Refined {
-    /// On the same surface, to rounding; the mesh itself where nothing had to be done.
+    /// The refined mesh, on the same surface up to rounding; the unchanged mesh if nothing had to be divided.
     pub(crate) mesh: Mesh,
-    /// The largest gap `e`, in the rest frame before the factor `gamma beta`; never below the true one.
+    /// An upper bound on the largest gap `e` of a triangle: a length in the rest frame, before the factor `gamma beta`.
     pub(crate) gap: f64,
-    /// Whether every gap is within the allowance.
+    /// Whether the gap of every triangle is within the allowance.
     pub(crate) complete: bool,
-    /// The fewest triangles that theory allows where `whole` is allowed.
+    /// The fewest triangles that theory allows for the allowance `whole` of [`refine`].
     pub(crate) minimum_triangles: f64,
 }
 
-/// Refines the meshes of one object as seen from `observer`, both in the rest frame, until every gap is within the
-/// allowance; `whole` is what would be allowed if gaps were all there is.
+/// Refines the meshes of one object until the gap of every triangle is within the allowance. The meshes and the
+/// position `observer` are in the rest frame. `whole` is the allowance that the tolerance would leave if the gap were
+/// the only error.
 ///
-/// Vertices of a mesh stay what they are, in their order; new ones follow, first those on edges. The new
-/// positions lie on the flat triangles to rounding, equal for equal edges whatever else the vertices carry, in one mesh
-/// or in several; attributes are interpolated, directions brought to unit length. Same result for any number of threads.
+/// The vertices of a mesh stay unchanged and in their order. New vertices follow, first those on edges. The new
+/// positions lie on the flat triangles up to rounding; edges with equal ends get equal new positions, whatever other
+/// attributes their vertices have, within one mesh and across meshes. Attributes are interpolated, and normals and
+/// tangents are brought to unit length. The result is the same for any number of threads.
 ///
-/// All together have at most `most_more` triangles more than before. Where that is too little, edges and
-/// triangles alike aim at gaps larger by one factor, or triangles whose need was not predicted stop when their share is
-/// used up; no cracks appear.
+/// All meshes together get at most `most_more` additional triangles. If that is too few, one common factor loosens the
+/// allowance of all edges and triangles; in addition, a triangle that needs more than predicted stops when its share is
+/// used up. No cracks appear in either case.
 pub(crate) fn refine(
     meshes: &[&Mesh],
     observer: DVec3,
@@ -43,7 +45,8 @@ pub(crate) fn refine(
     whole: &Allowance,
     most_more: u64,
 ) -> Vec<Refined> {
-    // What has a small gap at a glance is never divided, nor are its edges: their gaps are not larger.
+    // A triangle whose cheap bound is this small is never divided, and neither are its edges, because their gaps are
+    // not larger.
     let small = match allowance {
         Allowance::Everywhere(allowed) => EDGE_SHARE * allowed,
         Allowance::Angle { .. } => 0.0,
@@ -114,14 +117,15 @@ pub(crate) fn refine(
         .collect()
 }
 
-/// What a triangle is divided into.
+/// A divided triangle.
 struct Outcome {
-    /// The vertices of the boundary, counter-clockwise from the first corner on.
+    /// Indices of the vertices on the boundary, counter-clockwise from the first corner on.
     boundary: Vec<u32>,
     pieces: Pieces,
 }
 
-/// The boundary of a triangle, counter-clockwise from the first corner on: vertices, and what they are.
+/// The boundary of a triangle, counter-clockwise from the first corner on: the vertices' indices, and the vertices as
+/// [`Corner`]s.
 fn boundary(
     corners: [u32; 3],
     positions: &[DVec3],
@@ -167,7 +171,8 @@ fn boundary(
     (boundary, points)
 }
 
-/// Puts a mesh together from what became of those of its triangles that were looked at, and all others, in their order.
+/// Assembles a mesh from the outcomes of the triangles in `looked_at` and from all its other triangles, in the order of
+/// the triangles.
 fn assemble(
     mesh: &Mesh,
     looked_at: &[u32],
@@ -214,14 +219,14 @@ fn assemble(
     }
 }
 
-/// The mesh with new vertices behind the old ones, and other triangles.
+/// The mesh with new vertices after the old ones, and with new triangles.
 fn interpolated(mesh: &Mesh, origins: &[Origin], triangles: Vec<[u32; 3]>) -> Mesh {
     let position = |origin: &Origin| {
         let [a, b, c] = origin
             .corners
             .map(|corner| mesh.positions()[corner as usize]);
         if origin.corners[1] == origin.corners[2] {
-            // On an edge, as the edge rule has it: the same bits from both sides.
+            // A vertex on an edge gets its position from the edge rule, so that it has the same bits on both sides.
             point_between(a, b, origin.weights.y)
         } else {
             a * origin.weights.x + b * origin.weights.y + c * origin.weights.z
@@ -284,8 +289,9 @@ fn extended<T: Copy + Send + Sync>(
 mod tests {
     use super::*;
 
-    /// A quad whose texture coordinates, colours and tangents are affine in position: so are those of every new
-    /// vertex; the old ones stay first, and triangles keep their side.
+    /// The texture coordinates, colours and tangents of this quad are affine functions of the position, so those of
+    /// every new vertex have to follow the same functions. The old vertices have to stay first, and the triangles have
+    /// to keep their orientation.
     #[test]
     fn attributes_are_interpolated_where_the_new_vertices_lie() {
         let positions = vec![
@@ -330,7 +336,7 @@ mod tests {
         );
     }
 
-    /// A quad under a tolerance that takes far more than there is.
+    /// The tolerance of this quad needs far more triangles than the limit.
     #[test]
     fn a_limit_holds_and_most_of_it_is_used() {
         let positions = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];

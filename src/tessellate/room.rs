@@ -1,32 +1,32 @@
-//! How many points each of many triangles may have inside, where all together have a limit.
+//! How many points each of many triangles may have inside, if all together have a limit.
 
-/// So many turns are taken at most.
+/// Limit on the number of turns; in each turn triangles are divided.
 const TURNS: u32 = 2;
 
-/// What a triangle may take beyond what was predicted, which is good on the whole but not for each.
+/// Points that a triangle may have beyond its prediction. Predictions are good on average, but not for each triangle.
 const BEYOND: f64 = 4.0;
 
-/// More than this is not predicted of any triangle.
+/// Upper limit on the prediction for one triangle.
 const MAX_PREDICTED: f64 = 1e15;
 
-/// A number of points shared by triangles: first by what was predicted of each; what some leave goes to those that were
-/// short of points, which are then divided anew.
+/// A number of points that triangles share. The first turn gives shares in proportion to the predictions. The points
+/// that some triangles leave then go to the triangles that were short of points, which are divided anew.
 ///
-/// Shares depend on what was used before and nothing else.
+/// The shares depend only on the predictions and on the numbers of points used in the turn before.
 pub(super) struct Room {
     weights: Vec<f64>,
-    /// What those have that have another turn.
+    /// Points left for the triangles that get another turn.
     left: u64,
     turns: u32,
-    /// Triangles that are to be divided next.
+    /// Triangles to be divided next.
     short: Vec<usize>,
 }
 
 impl Room {
-    /// For triangles of which so much is predicted.
+    /// A number of points for triangles with these predictions.
     pub(super) fn new(predicted: Vec<f64>, points: u64) -> Self {
         let weight = |predicted: f64| {
-            // NaN is as good as too many.
+            // A prediction of NaN counts as too many points.
             if predicted < MAX_PREDICTED {
                 predicted + BEYOND
             } else {
@@ -41,7 +41,8 @@ impl Room {
         }
     }
 
-    /// Which triangles are to be divided next, in their order, and how many points each may have; none in the end.
+    /// The triangles to be divided next, in their order, and how many points each may have. The list is empty after the
+    /// last turn.
     pub(super) fn turn(&mut self) -> Vec<(usize, usize)> {
         if self.turns == TURNS {
             return vec![];
@@ -54,12 +55,12 @@ impl Room {
         short.into_iter().zip(most).collect()
     }
 
-    /// Whether the turn that is being taken is the last one.
+    /// Whether the current turn is the last one.
     pub(super) fn is_last_turn(&self) -> bool {
         self.turns == TURNS
     }
 
-    /// Tells how many points a triangle has used, and whether it was short of more.
+    /// Records how many points a triangle has used, and whether it needs more.
     pub(super) fn used(&mut self, number: usize, points: usize, is_short: bool) {
         if is_short {
             self.short.push(number);
@@ -69,8 +70,9 @@ impl Room {
     }
 }
 
-/// Shares of a whole in proportion to weights, which are not negative; all together never more than that, and less by at
-/// most one for each share where any weight is above zero and the whole is below 2^53.
+/// Shares of `whole` in proportion to weights, which must not be negative. The sum of the shares is never more than
+/// `whole`. It is less than `whole` by at most one for each share, if any weight is above zero and `whole` is below
+/// 2^53.
 pub(crate) fn shares(whole: u64, weights: &[f64]) -> Vec<u64> {
     let mut weight: f64 = weights.iter().sum();
     let mut left = whole;
@@ -93,7 +95,7 @@ pub(crate) fn shares(whole: u64, weights: &[f64]) -> Vec<u64> {
 mod tests {
     use super::*;
 
-    /// Triangles that need so many points, and what they get.
+    /// The points that triangles get if they need `needed` points.
     fn shared(predicted: &[f64], needed: &[usize], points: u64) -> Vec<usize> {
         let mut room = Room::new(predicted.to_vec(), points);
         let mut got = vec![0; needed.len()];
@@ -138,7 +140,7 @@ mod tests {
             );
         }
         assert_eq!(shared(&predicted, &needed, 100_000), needed);
-        // One of which nothing was predicted gets nearly all that there is.
+        // A triangle with a prediction of zero gets nearly all points.
         let got = shared(&[100.0, 100.0, 0.0], &[1, 1, 10_000], 9_000);
         assert!(got[2] > 8_900, "{got:?}");
     }

@@ -1,14 +1,14 @@
-//! One triangle refined: a Delaunay triangulation on the sky of an observer at rest.
+//! Refinement of one triangle: a Delaunay triangulation on the sky of an observer at rest with the object.
 //!
-//! In the stereographic chart of the triangle's own plane, `w = q / (hypot(q, h) + h)` for the in-plane
-//! offset `q` from the foot of the perpendicular, circles of the sky are circles, so that a planar Delaunay
-//! triangulation there is the spherical one. The metric in which gaps are measured, `r` times that of the
-//! sky, is `4 h |dw|^2 / (1 - |w|^4)` in it.
+//! The stereographic chart of the triangle's own plane is `w = q / (hypot(q, h) + h)`, where `q` is the in-plane offset
+//! from the foot of the perpendicular through the observer and `h` the distance of the plane. Circles on the sky are
+//! circles in this chart, so the planar Delaunay triangulation of the chart is the spherical one of the sky. The gap
+//! metric, which is `r` times the metric of the sky (`minimum`), is `4 h |dw|^2 / (1 - |w|^4)` in the chart.
 //!
-//! Points are added until no triangle's gap exceeds what is allowed. Which triangle comes first and where its
-//! point goes is what makes the mesh cheap: the one whose shortest edge is nearest to the ideal length, and
-//! the point that makes an equilateral triangle on that edge (P.-E. Bern's and A. Üngör's off-centres, in the
-//! order of an advancing front). Perfect triangles grow from perfect edges; flaws are left to the end.
+//! Points are added until no triangle's gap exceeds the allowance. Two choices keep the number of triangles small. The
+//! next triangle to be divided is the one whose shortest edge is nearest to the ideal length. The new point makes an
+//! equilateral triangle on that edge (P.-E. Bern's and A. Üngör's off-centres, in the order of an advancing front).
+//! Good triangles thus grow from good edges, and bad ones are left to the end.
 
 use glam::{DVec2, DVec3};
 use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
@@ -25,19 +25,20 @@ use super::queue::{Queue, Task};
 use super::strip::strip;
 use super::{Allowance, triangle_gap};
 
-/// The gap that new triangles aim at, as a part of what is allowed: a little room for the last few, which
-/// have to fit between others.
+/// The gap at which new triangles aim, as a fraction of the allowed gap. The rest is room for the last few triangles,
+/// which have to fit between others.
 const AIM: f64 = 0.96;
 
-/// A point this near to an edge of the boundary, against the edge's length, would make a flat triangle.
+/// A point nearer to an edge of the boundary than this would make a thin triangle. The unit is twice the edge's length.
 const TOO_NEAR: f64 = 0.225;
 
-/// How many charts are tried, each flatter than the one before, before the plain strip is taken. Where the observer is in
-/// the triangle's plane, the first is all but a line, in which faces next to the boundary may turn over; each flatter
-/// one needs more points.
+/// How many charts are tried, each flatter than the one before, before a plain strip is used instead. If the observer
+/// is in the triangle's plane, the first chart is almost a line, and faces next to the boundary may turn over; each
+/// flatter chart needs more points.
 const CHARTS: i32 = 8;
 
-/// Where the points that are granted are too few, so many times as much is allowed; then 4 times that factor, and so on.
+/// If the granted points are too few, the allowance is multiplied by this factor; if that does not suffice, by a factor
+/// 4 times as large, and so on.
 const LOOSER: f64 = 4.0;
 const LOOSEST: f64 = 1e100;
 
@@ -45,14 +46,14 @@ const LOOSEST: f64 = 1e100;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grant {
     pub(super) granted: usize,
-    /// Whether there will never be more.
+    /// Whether the triangle gets no other turn with more points.
     pub(super) is_last: bool,
 }
 
-/// Divides the triangle between three positions, whose boundary is `boundary` (counter-clockwise, from corner 0
-/// on), until every gap is within the allowance or so many points have been added as make sense for it, `max_points`
-/// and what a flatter chart takes; never more than `granted`. Where those are too few and `is_last` says that there will
-/// be no more, gaps are larger by one factor.
+/// Divides the triangle between three positions, whose boundary is `boundary` (counter-clockwise, from corner 0 on),
+/// until the gap of every piece is within the allowance, or until `max_points` points have been added, plus the extra
+/// points of a flatter chart; the number never exceeds `granted`. If `granted` is too small and `is_last` is set, the
+/// allowance of the whole triangle is multiplied by one factor. All positions are in the rest frame.
 pub(super) fn divide(
     positions: [DVec3; 3],
     observer: DVec3,
@@ -97,8 +98,8 @@ pub(super) fn divide(
     best.unwrap_or_else(|| strip(boundary, allowance))
 }
 
-/// The same with one allowance; `None` where every chart has faces that are turned over. The limits are the points that
-/// make sense, and those granted.
+/// Divides the triangle with one fixed allowance; `None` if faces are turned over in every chart. The two limits are
+/// `max_points` and `granted` of [`divide`].
 fn divide_on_sky(
     plane: Plane,
     positions: [DVec3; 3],
@@ -139,7 +140,7 @@ fn divide_on_sky(
 
 /// A point to be added.
 struct New {
-    /// Where in the chart.
+    /// Coordinates in the chart.
     w: DVec2,
     /// Weights of the triangle's corners.
     weights: DVec3,
@@ -147,26 +148,26 @@ struct New {
     hint: FixedVertexHandle,
 }
 
-/// A triangulation that grows.
+/// A growing triangulation of one source triangle, in a chart.
 struct Front<'a> {
     chart: Chart,
     positions: [DVec3; 3],
     observer: DVec3,
     allowance: &'a Allowance,
     triangulation: ConstrainedDelaunayTriangulation<Point2<f64>>,
-    /// What is known of the vertices of the triangulation, which are small and stay together so.
+    /// The vertices of the triangulation as points of the plane. They are kept outside the triangulation, so that its
+    /// own vertices are small and close together in memory.
     points_in_plane: Vec<PlanePoint>,
-    /// And their weights of the triangle's corners.
+    /// Weights of the source triangle's corners at each vertex.
     weights: Vec<DVec3>,
     tasks: Queue,
-    /// For each face its flaw; NaN where nothing is to do. Tasks that
-    /// say otherwise are out of date.
+    /// The flaw of each face; NaN if the face need not be divided. A task with a different flaw is out of date.
     flaws: Vec<(f32, FixedFaceHandle<InnerTag>)>,
     boundary: &'a [Corner],
 }
 
 impl<'a> Front<'a> {
-    /// The triangulation of the boundary alone; `None` where rounding throws points of it together.
+    /// The triangulation of the boundary alone; `None` if rounding makes points of the boundary coincide.
     fn new(
         chart: Chart,
         positions: [DVec3; 3],
@@ -216,7 +217,8 @@ impl<'a> Front<'a> {
         Some(front)
     }
 
-    /// Adds points until nothing is left to do, or `max_points` have been added; whether something may be left to do.
+    /// Adds points until no face has to be divided or `max_points` have been added; whether the latter is the case, so
+    /// that faces may be left to divide.
     fn advance(&mut self, max_points: usize) -> bool {
         let mut added = 0;
         let mut around = vec![];
@@ -254,7 +256,7 @@ impl<'a> Front<'a> {
         added == max_points
     }
 
-    /// Sets a task if the face has too large a gap.
+    /// Adds a task for the face if its gap is too large.
     fn consider(&mut self, face: FixedFaceHandle<InnerTag>, vertices: [FixedVertexHandle; 3]) {
         let flaw = self.flaw(vertices);
         if self.flaws.len() <= face.index() {
@@ -269,8 +271,9 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// How far the square of the shortest edge of a face with too large a gap is from that of the ideal length, as a part
-    /// of the smaller one.
+    /// The flaw of a face whose gap is too large: the difference between the square of its shortest edge and the square
+    /// of the ideal length, both in the chart, divided by the smaller of the two squares. `None` if the gap is within
+    /// the allowance.
     fn flaw(&self, vertices: [FixedVertexHandle; 3]) -> Option<f32> {
         let indices = vertices.map(|vertex| vertex.index());
         if self.is_outside(indices) {
@@ -287,22 +290,25 @@ impl<'a> Front<'a> {
         if is_small {
             return None;
         }
-        // An equilateral triangle with the circumradius R, R^2 / 2 the gap of its middle, has the side sqrt(3) R. The
-        // metric is that of one corner, by chance: always the newest one would be the same side's too often.
+        // In the gap metric an equilateral triangle with the circumradius R has the gap R^2 / 2 at its middle and the
+        // side sqrt(3) R. The metric is evaluated at one corner, picked by the sum of the indices: the newest corner
+        // would lie on the same side too often.
         let corner = (indices[0] + indices[1] + indices[2]) % 3;
         let ideal = 6.0 * AIM * allowed / self.chart.metric([a, b, c][corner]);
         let shortest = sides[0].min(sides[1]).min(sides[2]);
         Some(((shortest - ideal).abs() / shortest.min(ideal)) as f32)
     }
 
-    /// Three points on one side of the triangle: a face between the side and its arc in the chart.
+    /// Whether a face is outside the source triangle. All three vertices of such a face are on one side of the source
+    /// triangle; in the chart the face lies between the side's arc and its chord.
     fn is_outside(&self, vertices: [usize; 3]) -> bool {
-        // Points inside are on no side.
+        // A point inside the source triangle is on no side.
         let sides = |vertex: usize| self.boundary.get(vertex).map_or(0, |corner| corner.sides);
         sides(vertices[0]) & sides(vertices[1]) & sides(vertices[2]) != 0
     }
 
-    /// Where to add a point for a face: in front of its shortest edge, or else where its middle is; and a vertex near it.
+    /// The point to be added for a face: in front of its shortest edge if there is room, else at its worst point or at
+    /// its middle.
     fn new_point(&self, face: FixedFaceHandle<InnerTag>) -> Option<New> {
         let vertices = self.triangulation.face(face).vertices();
         let hint = vertices[0].fix();
@@ -319,7 +325,8 @@ impl<'a> Front<'a> {
                 });
             }
         }
-        // Next to the boundary: where the gap is largest, or the middle where that is on the boundary itself.
+        // Next to the boundary the new point is the worst point, where the gap is largest, or the middle of the face if
+        // the worst point is on the boundary itself.
         let indices = vertices.map(|vertex| vertex.index());
         let [a, b, c] = indices.map(|index| self.points_in_plane[index].offset);
         let [u, v, w] = triangle_gap_place(a, b, c);
@@ -335,8 +342,8 @@ impl<'a> Front<'a> {
         (weights.min_element() > 0.0).then_some(New { w, weights, hint })
     }
 
-    /// The point that makes an equilateral triangle of the ideal size on the shortest side of a
-    /// counter-clockwise triangle; its circumcentre if that is nearer.
+    /// The chart point that makes an equilateral triangle of the ideal size on the shortest side of a counter-clockwise
+    /// triangle; the circumcentre of the triangle if that is nearer to the side.
     fn ideal_point(&self, triangle: [DVec2; 3]) -> DVec2 {
         let sides = [0, 1, 2].map(|i| (triangle[i], triangle[(i + 1) % 3], triangle[(i + 2) % 3]));
         let length = |side: &(DVec2, DVec2, DVec2)| (side.1 - side.0).length_squared();
@@ -360,7 +367,7 @@ impl<'a> Front<'a> {
                 half
             }
         };
-        // Twice: the metric is that between the side and the point.
+        // The height is computed twice, the second time with the mean of the metric between the side and the point.
         let metric = self.chart.metric(middle);
         let apex = middle + inward * height(metric);
         let metric = (metric * self.chart.metric(apex)).sqrt();
@@ -372,7 +379,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// A vertex next to a point of the chart, if that is in a face of the triangle, not too near to the boundary.
+    /// A vertex near the chart point `w`, if `w` is inside the source triangle and not too near to its boundary.
     fn room(&self, w: DVec2, hint: FixedVertexHandle) -> Option<FixedVertexHandle> {
         match self
             .triangulation
@@ -390,7 +397,7 @@ impl<'a> Front<'a> {
                     .filter(|edge| edge.is_constraint_edge())
                     .all(|edge| {
                         let (a, b) = (to_vec(edge.from().position()), to_vec(edge.to().position()));
-                        // Height over length.
+                        // The condition compares the point's height above the edge with the edge's length.
                         (b - a).perp_dot(w - a).abs() > 2.0 * TOO_NEAR * (b - a).length_squared()
                     });
                 has_room.then(|| vertices[0].fix())
@@ -408,10 +415,11 @@ impl<'a> Front<'a> {
         mix(self.positions, weights) - self.observer
     }
 
-    /// The triangles; `None` where they do not cover the triangle exactly once, as rounding may bring about.
+    /// The pieces; `None` if they do not cover the source triangle exactly once, which rounding may cause.
     ///
-    /// They do if no face is turned over and the faces have the boundary of the triangle for their boundary: each of
-    /// its edges once, from one point to the next, and no other edge without a face on either side.
+    /// They cover it exactly once if no face is turned over and the boundary of all faces together is the boundary of
+    /// the source triangle: each edge between neighbouring boundary points occurs once, and every other edge has a face
+    /// on both sides.
     fn finish(self) -> Option<Pieces> {
         let mut pieces = Pieces {
             inside: self.weights[self.boundary.len()..].to_vec(),
@@ -446,7 +454,7 @@ impl<'a> Front<'a> {
             }
             let points_in_plane = vertices.map(|vertex| &self.points_in_plane[vertex]);
             let offsets = points_in_plane.map(|point| point.offset);
-            // Most are known to be smaller than one that was met before.
+            // The cheap bound shows for most faces that their gap is smaller than one measured before.
             let bound = gap_along(&self.chart.plane, points_in_plane).bound;
             if !(bound <= pieces.gap && bound <= self.allowance.between(&offsets)) {
                 pieces.measure(offsets, self.allowance);
@@ -458,7 +466,7 @@ impl<'a> Front<'a> {
 }
 
 impl Pieces {
-    /// Takes the gap of one triangle into account.
+    /// Includes the gap of one output triangle, whose corners are offsets from the observer.
     pub(super) fn measure(&mut self, offsets: [DVec3; 3], allowance: &Allowance) {
         let gap = triangle_gap(offsets[0], offsets[1], offsets[2]);
         self.gap = self.gap.max(gap);

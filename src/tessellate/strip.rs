@@ -1,9 +1,10 @@
-//! A triangle too thin to be triangulated on the sky.
+//! Division of a triangle that is too thin to be triangulated on the sky.
 
 use super::Allowance;
 use super::pieces::{Corner, Pieces};
 
-/// A triangle so thin that it has no plane, or none that numbers can tell: its two long sides joined by a strip.
+/// Divides a triangle that is so thin that it has no plane, at least in `f64`: a strip of triangles joins its two long
+/// sides.
 pub(super) fn strip(boundary: &[Corner], allowance: &Allowance) -> Pieces {
     let side_length = |side: usize| {
         let on = |corner: &&Corner| corner.sides >> side & 1 == 1 && corner.sides.count_ones() == 2;
@@ -20,7 +21,8 @@ pub(super) fn strip(boundary: &[Corner], allowance: &Allowance) -> Pieces {
             l
         }
     });
-    // The boundary turned so that it begins with the longest side, which ends at the second of its corners.
+    // The boundary is rotated so that it begins with the longest side; this side ends at the second corner in the new
+    // order.
     let is_corner = |corner: &Corner| corner.sides.count_ones() == 2;
     let starts_at = |corner: &Corner| is_corner(corner) && corner.weights[longest] == 1.0;
     let start = boundary.iter().position(starts_at).unwrap_or(0);
@@ -30,7 +32,7 @@ pub(super) fn strip(boundary: &[Corner], allowance: &Allowance) -> Pieces {
         .iter()
         .position(|&i| is_corner(&boundary[i as usize]))
         .unwrap_or(0);
-    // Both from the start to the end of the longest side.
+    // Both chains go from the start to the end of the longest side.
     let lower = &order[..=end];
     let upper: Vec<u32> = std::iter::once(order[0])
         .chain(order[end..].iter().rev().copied())
@@ -57,7 +59,7 @@ pub(super) fn strip(boundary: &[Corner], allowance: &Allowance) -> Pieces {
             (l, _) => l.is_some(),
         };
         if take_lower {
-            // Both chains end at the same corner; the last of them closes the strip.
+            // Both chains end at the same corner; the chain that reaches it last closes the strip.
             if lower[low + 1] != upper[up] {
                 add([lower[low], lower[low + 1], upper[up]]);
             }

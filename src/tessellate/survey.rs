@@ -1,7 +1,7 @@
-//! What a whole mesh is before any refinement: its largest gap, and the fewest triangles that theory allows for it.
+//! A survey of a whole mesh before any refinement: its largest gap, and the fewest triangles that theory allows for it.
 //!
-//! Nearly all triangles of a fine mesh are known at a glance to have a smaller gap than one that was met before, and to
-//! be enough by themselves; the others are looked at one by one.
+//! For nearly all triangles of a fine mesh cheap bounds (`ceiling`) show that their gap is smaller than one found
+//! before, and that theory asks for no more than the triangle itself. Only the other triangles are examined one by one.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -14,34 +14,37 @@ use super::minimum::AREA_OF_GAP;
 use super::{Allowance, minimum_triangles, triangle_gap};
 use crate::mesh::Mesh;
 
-/// Triangles a thread takes at a time; always the same, so that sums do not depend on the threads.
+/// Number of triangles that a thread processes at a time. It is constant, so that sums do not depend on the number of
+/// threads.
 const TRIANGLES_PER_JOB: usize = 16_384;
 
-/// Triangles that are looked at at once: see `light_cone`.
+/// Number of triangles whose cheap bounds are computed together in vector instructions, as in `light_cone`.
 const BLOCK: usize = 64;
 
-/// What is known of a mesh after one look at all of its triangles.
+/// The result of a survey of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Survey {
-    /// The triangles, in their order, whose gap may be above the limit.
+    /// Indices of the triangles whose gap may exceed the limit, in increasing order.
     pub(crate) above: Vec<u32>,
-    /// The largest gap `e` of all others; never below the true one.
+    /// An upper bound on the largest gap `e` of all other triangles, in the rest frame.
     pub(crate) gap: f64,
-    /// The fewest triangles that theory allows: the sum of [`minimum_triangles`], at least one for each triangle.
+    /// The fewest triangles that theory allows: the sum of [`minimum_triangles`] over all triangles, each counted as at
+    /// least one.
     pub(crate) minimum_triangles: f64,
 }
 
-/// Surveys a mesh as seen from `observer`, both in the rest frame: which triangles may have gaps above `limit`, and how
-/// many it takes to keep all gaps within `allowance`.
+/// Surveys a mesh: which triangles may have gaps above `limit`, and how many triangles are needed to keep all gaps
+/// within `allowance`. The mesh, the position `observer` and the gaps are in the rest frame.
 ///
-/// Same result for any number of threads: the gap is the largest of all, each taken as the smaller one of
-/// [`triangle_gap`] and its ceiling, and who is passed over has a ceiling that is not above it.
+/// The result is the same for any number of threads. The gap of a triangle is the smaller one of [`triangle_gap`] and
+/// its cheap bound, and the result is the largest of all. A triangle is skipped only if its cheap bound is not above a
+/// gap found before, so skipping never changes the result.
 pub(crate) fn survey(mesh: &Mesh, observer: DVec3, limit: f64, allowance: &Allowance) -> Survey {
     let enough = match allowance {
         Allowance::Everywhere(allowed) => 2.0 * AREA_OF_GAP * allowed,
         Allowance::Angle { .. } => 0.0,
     };
-    // The bits of floats that are not negative are in the order of the floats.
+    // The bits of non-negative floats, read as integers, have the order of the floats.
     let largest = AtomicU64::new(0);
     let jobs = mesh.triangles().par_chunks(TRIANGLES_PER_JOB).enumerate();
     let found = jobs.map(|(job, triangles)| {
@@ -70,19 +73,19 @@ pub(crate) fn survey(mesh: &Mesh, observer: DVec3, limit: f64, allowance: &Allow
     Survey {
         above: above.concat(),
         gap: f64::from_bits(largest.into_inner()),
-        // Added up in their order: the same sum for any number of threads.
+        // The sums are added in the order of the jobs, so the result is the same for any number of threads.
         minimum_triangles: sums.iter().sum(),
     }
 }
 
-/// The largest gap `e` of a mesh as seen from `observer`, both in the rest frame; never below the true one.
+/// An upper bound on the largest gap `e` of a mesh, in the rest frame like the mesh and the position `observer`.
 pub(crate) fn largest_gap(mesh: &Mesh, observer: DVec3) -> f64 {
     let any = Allowance::Everywhere(f64::INFINITY);
     survey(mesh, observer, f64::INFINITY, &any).gap
 }
 
-/// Tells of each triangle, in their order, what is known at once, and its corners relative to the observer where they
-/// are asked for.
+/// Calls `tell` for each triangle in its order, with its cheap bounds and a function that returns the offsets of its
+/// corners from the observer.
 fn glance(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
@@ -118,7 +121,7 @@ impl NullaryFnOnce for Block<'_> {
 
     #[inline(always)]
     fn call(self) {
-        // Coordinate by coordinate, so that the compiler can make vectors of them.
+        // The offsets are stored coordinate by coordinate, so that the compiler can use vector instructions.
         let mut offsets = [[[0.0; BLOCK]; 3]; 3];
         for (index, corners) in self.triangles.iter().enumerate().take(BLOCK) {
             for (offsets, &corner) in offsets.iter_mut().zip(corners) {
@@ -143,7 +146,8 @@ impl NullaryFnOnce for Block<'_> {
 mod tests {
     use super::*;
 
-    /// A bumpy sheet close to the observer on one side and far on the other, in an order that hides the largest gap.
+    /// A bumpy sheet that is close to the observer on one side and far on the other. The order of its triangles does
+    /// not show where the largest gap is.
     fn sheet() -> Mesh {
         let cells = 60;
         let at = |i: u32, j: u32| {
