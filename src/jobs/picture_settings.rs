@@ -129,7 +129,7 @@ impl PictureSettings {
         }
     }
 
-    /// The files that [`render_to_files`] makes of a scene with `steps` steps, in the order of the pictures: `path`
+    /// The files that [`render_to_files`](super::render_to_files) makes of a scene with `steps` steps, in the order of the pictures: `path`
     /// itself for one picture; `NAME_step000.png`, `NAME_step001.png` and so on in the same folder for several.
     pub fn files(&self, path: &Path, steps: usize) -> Vec<PathBuf> {
         match self.picture_count(steps) {
