@@ -23,7 +23,8 @@ pub(super) struct AccuracyArgs {
     /// scene units) or deg:0.02 (an angle seen by the observer, in degrees) [default: 1e-3]
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<Tolerance>,
-    /// Add no vertices; the certificate still bounds the distance from the true photosurface
+    /// Add no vertices; the certificate still bounds the distance from the true photosurface. A round shape without a
+    /// resolution has that of its kind, which may be finer than the tolerance needs
     #[arg(long)]
     no_subdivide: bool,
     /// Maximum number of triangles of all photosurfaces together. If the tolerance needs more, the largest gaps are closed

@@ -13,24 +13,24 @@ use super::args::{Given, number, refuse, vector};
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Camera (places and directions are in the observer's frame)")]
 pub(super) struct CameraArgs {
-    /// What the observer sees, or photosurfaces from any other place
+    /// Draw the observer's view, or the photosurfaces from another place
     #[arg(long, value_enum, default_value_t = View::Observer)]
     pub(super) view: View,
     /// How the observer's view is made; from outside there are photosurfaces only
     /// [default: rays for the observer, mesh from outside]
     #[arg(long, value_enum)]
     method: Option<Method>,
-    /// Width and height of the picture in pixels, of each one on a sheet [default: 1280x720, on a sheet 320x240]
+    /// Width and height of the picture in pixels, of each picture on a sheet [default: 1280x720, on a sheet 320x240]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<PictureSize>,
     /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180 [default: 60, from outside
     /// 30; the observer's on a sheet, and of a mesh without --look and --target, so that everything is in the picture]
     #[arg(long, value_name = "DEG", value_parser = number, allow_hyphen_values = true)]
     fov: Option<f64>,
-    /// Show the whole sky in longitude and latitude instead
+    /// Show the whole sky as a longitude-latitude map
     #[arg(long, conflicts_with = "fov")]
     full_sky: bool,
-    /// Direction in which the camera looks, of any length [default: to the middle of what is there]
+    /// Direction in which the camera looks, of any length [default: towards the middle of the objects]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, conflicts_with = "target")]
     look: Option<DVec3>,
     /// Place at which the camera looks, in scene units
@@ -47,10 +47,10 @@ pub(super) struct CameraArgs {
     /// Show the photosurfaces of all steps in one picture (--view outside)
     #[arg(long, conflicts_with = "sheet")]
     pub(super) together: bool,
-    /// Rays a pixel along each side: N for N x N of them, from 1 to 16; they smooth edges and textures
+    /// Antialias with N x N rays per pixel, N from 1 to 16
     #[arg(long, value_name = "N", default_value = "3", value_parser = samples, allow_hyphen_values = true)]
     pub(super) samples: NonZeroU32,
-    /// Colour where nothing is seen, #rrggbb
+    /// Background colour, #rrggbb
     #[arg(long, value_name = "COLOR", value_parser = color, default_value = "#14171c")]
     pub(super) background: Color,
 }
@@ -67,7 +67,7 @@ pub(super) enum View {
 pub(super) enum Method {
     /// Follow light back to where it came from
     Rays,
-    /// Look at the photosurfaces
+    /// Draw the photosurfaces
     Mesh,
 }
 

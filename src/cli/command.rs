@@ -2,6 +2,7 @@
 
 use std::num::NonZeroUsize;
 use std::process::ExitCode;
+use std::thread::available_parallelism;
 
 use anyhow::{Context, ensure};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -11,8 +12,9 @@ use rayon::ThreadPoolBuilder;
 use super::status::{INTERRUPTED, Status, ended};
 use super::{args, check, cost, example, export, messages, render, schema};
 
-/// More threads than any machine has cores are refused.
-const MAX_THREADS: usize = 1024;
+/// More threads than so many for each core, and than so many on any machine, only wait for each other.
+const THREADS_PER_CORE: usize = 4;
+const MIN_MAX_THREADS: usize = 64;
 
 /// The variable of the environment that says how many threads there are.
 const OF_ENVIRONMENT: &str = "RAYON_NUM_THREADS";
@@ -88,9 +90,11 @@ fn compute_with(threads: Option<NonZeroUsize>) -> anyhow::Result<()> {
             (OF_ENVIRONMENT, named.unwrap_or(0))
         }
     };
+    let cores = available_parallelism().map_or(1, NonZeroUsize::get);
+    let max_threads = MIN_MAX_THREADS.max(THREADS_PER_CORE * cores);
     ensure!(
-        threads <= MAX_THREADS,
-        "{name} is {threads}, expected at most {MAX_THREADS}"
+        threads <= max_threads,
+        "{name} is {threads}, expected at most {max_threads} on this machine"
     );
     let pool = ThreadPoolBuilder::new().num_threads(threads);
     pool.build_global().context(name)

@@ -220,6 +220,10 @@ fn scene_from_stdin(bytes: &[u8]) -> anyhow::Result<Scene> {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let text = text.trim_ascii_start();
     ensure!(
+        !text.is_empty(),
+        "stdin is empty, expected a scene (JSON) or a GLB"
+    );
+    ensure!(
         text.starts_with(b"{") || text.starts_with(b"["),
         "{EXPECTED}, this is neither; to read an .obj or a .gltf, give its file name instead of -"
     );

@@ -22,8 +22,8 @@ use super::status::Status;
 /// Make pictures of what the observer sees, or of photosurfaces from outside
 ///
 /// The observer's view is made by following rays of light back into the rest frame of each object, exact at every
-/// pixel, or with --method mesh by looking at the photosurfaces that export would write.
-/// Without SCENE or MESH the built-in scene "sphere" is taken:
+/// pixel, or with --method mesh by drawing the photosurfaces that export would write.
+/// Without SCENE or MESH the built-in scene "sphere" is used:
 ///
 ///     photosurface render
 ///     photosurface render --sheet --example cube -o cube.png
@@ -42,7 +42,7 @@ pub(super) struct RenderArgs {
     guides: GuideArgs,
     #[command(flatten)]
     accuracy: AccuracyArgs,
-    /// Where to write a .png; of several steps each has a file: out_step000.png, out_step001.png, ..., and those that
+    /// Where to write a .png; each step gets its own file: out_step000.png, out_step001.png, ..., and those that
     /// are finished stay when it is interrupted; - for stdout [default: NAME_VIEW.png or NAME_sheet.png in this directory]
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,
@@ -108,7 +108,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     })?;
     progress.finish();
     tell_of_costs(&rendered.costs, verbosity);
-    tell_of_empty(&rendered.empty, steps, verbosity);
+    tell_of_empty(&rendered.empty, steps, camera.sheet, verbosity);
     tell_of_missing(&input.textures, placed.scene(), verbosity);
     if !is_stdout(&files[0]) {
         verbosity.result(format_args!(
@@ -136,7 +136,7 @@ fn tell_of_costs(costs: &[ViewCost], verbosity: Verbosity) {
 }
 
 /// Says where nothing is to be seen, and where there would be something.
-fn tell_of_empty(empty: &[EmptyView], steps: usize, verbosity: Verbosity) {
+fn tell_of_empty(empty: &[EmptyView], steps: usize, is_sheet: bool, verbosity: Verbosity) {
     let Some(first) = empty.first() else {
         return;
     };
@@ -145,9 +145,13 @@ fn tell_of_empty(empty: &[EmptyView], steps: usize, verbosity: Verbosity) {
         1 => "nothing is to be seen in the picture".to_owned(),
         _ => format!("nothing is to be seen at {} of {steps} steps", empty.len()),
     };
+    let advice = format!("--look={x:.3},{y:.3},{z:.3} with a --fov, or --full-sky");
+    let advice = match is_sheet {
+        true => format!("a picture of its own without --sheet, with {advice}"),
+        false => advice,
+    };
     verbosity.note(format_args!(
-        "{which}: what there is is in another direction, or smaller than a pixel; try --look={x:.3},{y:.3},{z:.3} \
-         with a --fov, or --full-sky"
+        "{which}: every object is in another direction, or smaller than a pixel; try {advice}"
     ));
 }
 

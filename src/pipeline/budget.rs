@@ -117,9 +117,10 @@ impl PlacedScene {
             let at_some = placed.predict_some(object, wanted);
             placed.all_steps(&at_some).needed()
         };
+        // An aim stays where the prediction fits: if it was too low, counts hold.
         let mut objects: Vec<(usize, f64)> = forecast
             .iter()
-            .map(|at_some| self.all_steps(at_some).needed())
+            .map(|at_some| self.all_steps(at_some).triangles)
             .enumerate()
             .collect();
         objects.sort_by(|(_, a), (_, b)| a.total_cmp(b));
@@ -127,7 +128,8 @@ impl PlacedScene {
         for (done, &(object, mut need)) in objects.iter().enumerate() {
             let share = left / (objects.len() - done) as f64;
             if wanted.subdivide && need > share {
-                need = self.loosen(object, share, need, needed);
+                let with_room = self.all_steps(&forecast[object]).needed();
+                need = self.loosen(object, share, with_room, needed);
                 forecast[object] = self.predict_some(object, wanted);
             }
             left = (left - need).max(0.0);

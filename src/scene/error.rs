@@ -19,7 +19,7 @@ pub enum InvalidScene {
     #[error("two objects are named \"{0}\", expected a name of its own for each")]
     RepeatedName(String),
     /// No source or two.
-    #[error("object \"{name}\" has {found}, expected either \"file\" or \"shape\"")]
+    #[error("object \"{name}\" has {found} \"file\" and \"shape\", expected one of them")]
     Source {
         /// Which object.
         name: String,

@@ -306,7 +306,7 @@ mod tests {
                 r#"{ "objects": [ { "name": "a" } ] }"#.into(),
                 1,
                 "objects[0]",
-                "expected either \"file\" or \"shape\"",
+                "neither of \"file\" and \"shape\", expected one of them",
             ),
             (
                 r#"{ "objects": [ { "name": "a", "file": "a.glb", "scale": 0 } ] }"#.into(),

@@ -141,7 +141,7 @@ impl TryFrom<FromObject<ObjectFields>> for Object {
                 Source::Shape(shape, appearance)
             }
             (file, _) => {
-                let found = if file.is_some() { "both" } else { "neither" };
+                let found = if file.is_some() { "both" } else { "neither of" };
                 return Err(InvalidScene::Source { name, found });
             }
         };

@@ -1,10 +1,8 @@
 //! One tolerance of the study: photosurfaces made and written, timed, proven and measured.
 
-use std::env::temp_dir;
 use std::fs;
 
 use serde::Serialize;
-use tempfile::TempDir;
 
 use super::measured::{Measured, measure};
 use super::median::median;
@@ -12,11 +10,13 @@ use super::memory::{peak_bytes, restart_peak};
 use super::settings::MEASUREMENTS;
 use super::uniform::{UniformCost, uniform_cost};
 use super::{CostSettings, StudyError};
-use crate::jobs::{Cancelled, ExportError, ExportLevel, ExportSettings, Progress, export_levels};
+use crate::jobs::{
+    Cancelled, ExportError, ExportLevel, ExportSettings, OutputError, Progress, export_levels,
+};
 use crate::material::Model;
 use crate::pipeline::{Facts, PlacedScene};
 use crate::scene::{Scene, Tolerance, Unit};
-use crate::write::{Format, WriteError};
+use crate::write::{Format, ScratchFolder, WriteError};
 
 /// What one tolerance costs, all photosurfaces of all steps together.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -173,7 +173,7 @@ pub(super) fn mesh_cost(
 /// The export of a placed scene to a GLB, again and again, in a folder of its own.
 struct Export {
     level: ExportLevel,
-    folder: TempDir,
+    folder: ScratchFolder,
 }
 
 /// What one run gives, without the photosurfaces.
@@ -186,9 +186,7 @@ struct Run {
 
 impl Export {
     fn new(placed: &PlacedScene, max_triangles: u64) -> Result<Self, ExportError> {
-        let folder = temp_dir();
-        let in_folder = |source| ExportError::of_file(&folder, WriteError::Stream(source));
-        let folder = TempDir::new_in(&folder).map_err(in_folder)?;
+        let folder = ScratchFolder::new().map_err(OutputError::from)?;
         let settings = ExportSettings {
             max_triangles,
             ..ExportSettings::default()

@@ -6,7 +6,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use tempfile::{Builder, NamedTempFile};
+use tempfile::{Builder, NamedTempFile, TempDir};
 use thiserror::Error;
 
 use super::WriteError;
@@ -160,12 +160,15 @@ pub(super) fn directory_of(path: &Path) -> &Path {
 /// All writes in progress.
 static WRITES: Mutex<Writes> = Mutex::new(Writes {
     unfinished: BTreeSet::new(),
+    scratch: BTreeSet::new(),
     are_abandoned: false,
 });
 
 struct Writes {
     /// Their temporary files.
     unfinished: BTreeSet<PathBuf>,
+    /// Folders that go when their owners end.
+    scratch: BTreeSet<PathBuf>,
     /// Whether no file may be begun or finished any more.
     are_abandoned: bool,
 }
@@ -199,6 +202,36 @@ pub fn abandon_writes() {
     for path in &writes.unfinished {
         // There is nobody left to tell.
         let _ = fs::remove_file(path);
+    }
+    for path in &writes.scratch {
+        let _ = fs::remove_dir_all(path);
+    }
+}
+
+/// A folder for files that nobody keeps, among the system's temporary files; [`abandon_writes`] knows of it.
+pub(crate) struct ScratchFolder(TempDir);
+
+impl ScratchFolder {
+    /// # Errors
+    ///
+    /// The folder cannot be made, or all writing has been abandoned.
+    pub(crate) fn new() -> Result<Self, WriteError> {
+        let parent = std::env::temp_dir();
+        let mut writes = Writes::going_on().map_err(|source| io_error(&parent, source))?;
+        let folder = Builder::new().prefix(".photosurface-").tempdir_in(&parent);
+        let folder = folder.map_err(|source| io_error(&parent, source))?;
+        writes.scratch.insert(folder.path().to_owned());
+        Ok(Self(folder))
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        self.0.path()
+    }
+}
+
+impl Drop for ScratchFolder {
+    fn drop(&mut self) {
+        Writes::lock().scratch.remove(self.path());
     }
 }
 

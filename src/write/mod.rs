@@ -16,6 +16,7 @@ mod text;
 pub use error::WriteError;
 pub(crate) use export::FRAMES_PER_SECOND;
 pub use export::{Export, Playback};
+pub(crate) use file::ScratchFolder;
 pub use file::{Target, abandon_writes, destination, write_whole, write_whole_target};
 pub use format::Format;
 pub use gltf::{GltfFile, GltfOutput, replaced_data, write_glb, write_gltf, write_whole_gltf};

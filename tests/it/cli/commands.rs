@@ -509,7 +509,7 @@ fn every_command_computes_with_as_many_threads_as_it_is_told() {
         ("0", "at least 1"),
         ("-1", "a whole number"),
         ("many", "a whole number"),
-        ("1025", "--threads is 1025, expected at most 1024"),
+        ("1000000", "--threads is 1000000, expected at most"),
     ] {
         let run = workplace.run(&format!("check ball.json --threads {threads}"));
         assert_eq!(run.status, 2, "{run}");
@@ -517,7 +517,7 @@ fn every_command_computes_with_as_many_threads_as_it_is_told() {
     }
     let run = workplace.run_with("check ball.json", b"", &[("RAYON_NUM_THREADS", "65535")]);
     assert_eq!(run.status, 2, "{run}");
-    let said = "RAYON_NUM_THREADS is 65535, expected at most 1024";
+    let said = "RAYON_NUM_THREADS is 65535, expected at most";
     assert!(run.stderr.contains(said), "{run}");
 }
 
