@@ -4,7 +4,7 @@
 //! is granted so many triangles at each step that all together are within the budget, whatever was predicted.
 
 use super::placed_object::Granted;
-use super::plan::Predicted;
+use super::predicting::{Predicted, predict};
 use super::{PlacedScene, SurfaceOptions};
 use crate::tessellate::shares;
 
@@ -276,12 +276,12 @@ impl PlacedScene {
             Some((sketch, weights)) => (sketch, weights.clone()),
             None => (placed_object, vec![1.0; placed_object.parts.len()]),
         };
-        let predict = |index: usize| {
+        let predict_at = |index: usize| {
             let step = index * (steps - 1) / (looked_at - 1).max(1);
             let plan = self.plan(object, placed_object, step, wanted);
-            plan.predict(wanted, &weights)
+            predict(plan, wanted, &weights)
         };
-        (0..looked_at).map(predict).collect()
+        (0..looked_at).map(predict_at).collect()
     }
 }
 
