@@ -6,7 +6,7 @@
 //! even where the predictions are wrong.
 
 use super::placed_object::Granted;
-use super::plan::Predicted;
+use super::predicting::{Predicted, predict};
 use super::{PlacedScene, SurfaceOptions};
 use crate::tessellate::shares;
 
@@ -287,12 +287,12 @@ impl PlacedScene {
             Some((sketch, weights)) => (sketch, weights.clone()),
             None => (placed_object, vec![1.0; placed_object.parts.len()]),
         };
-        let predict = |index: usize| {
+        let predict_at = |index: usize| {
             let step = index * (steps - 1) / (looked_at - 1).max(1);
             let plan = self.plan(object, placed_object, step, wanted);
-            plan.predict(wanted, &weights)
+            predict(plan, wanted, &weights)
         };
-        (0..looked_at).map(predict).collect()
+        (0..looked_at).map(predict_at).collect()
     }
 }
 

@@ -1,8 +1,11 @@
 //! The pipeline: it makes the photosurface of every part at every step from a scene and its models.
 
 mod budget;
+mod certifying;
 mod error;
 mod facts;
+mod limits;
+mod making;
 mod mapped_mesh;
 mod morph;
 mod names;
@@ -10,7 +13,9 @@ mod photosurface;
 mod placed_object;
 mod placed_scene;
 mod plan;
+mod predicting;
 mod surface_options;
+mod together;
 mod vertex_data;
 
 pub use budget::Prediction;

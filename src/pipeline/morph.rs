@@ -1,6 +1,7 @@
 //! Photosurfaces of all steps with the same triangles, as morph targets need them.
 
 use super::plan::Plan;
+use super::together::make_together;
 use super::{Photosurface, PlacedScene, SurfaceOptions};
 
 impl PlacedScene {
@@ -18,8 +19,7 @@ impl PlacedScene {
                 .map(|step| self.plan(object, placed_object, step, wanted))
                 .collect();
             let views: Vec<_> = plans.iter().map(|plan| *plan.view()).collect();
-            let parts = Plan::carry_out_together(plans, wanted, placed_object.granted_together())
-                .into_iter();
+            let parts = make_together(plans, wanted, placed_object.granted_together()).into_iter();
             parts.map(move |surfaces| {
                 let steps = surfaces.into_iter().zip(&views).enumerate();
                 steps

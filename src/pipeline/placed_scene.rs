@@ -6,9 +6,10 @@ use glam::DVec3;
 use serde_json::Value;
 
 use super::facts::{Facts, SceneFacts};
+use super::making::{Surface, make};
 use super::names::{self, UniqueNames, step_label};
 use super::placed_object::{PlacedObject, Shaped, triangle_count};
-use super::plan::{Plan, Surface, Unrefined};
+use super::plan::{Plan, Unrefined};
 use super::vertex_data::VertexData;
 use super::{Photosurface, PlacedSceneError, SurfaceOptions};
 use crate::light_cone::View;
@@ -191,7 +192,7 @@ impl PlacedScene {
         let made = objects.flat_map(move |(object, placed_object)| {
             let plan = self.plan(object, placed_object, step, wanted);
             let view = *plan.view();
-            let surfaces = plan.carry_out(wanted);
+            let surfaces = make(plan, wanted);
             surfaces
                 .into_iter()
                 .map(move |surface| self.photosurface(object, step, &view, surface, wanted))

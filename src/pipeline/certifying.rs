@@ -1,0 +1,59 @@
+//! The certificate of one mesh at one step: its bounds against the tolerance of the scene.
+
+use glam::DVec3;
+
+use super::limits::{Limits, StepTolerance};
+use super::mapped_mesh::MappedMesh;
+use crate::mesh::Mesh;
+use crate::scene::Unit;
+use crate::tessellate::{Bounds, Certificate, Counts, survey};
+
+/// The measured gap of a mesh, and its numbers of triangles.
+pub(super) struct Measured {
+    /// The largest gap `e`, a length in the rest frame before the factor `gamma beta`.
+    pub(super) gap: f64,
+    pub(super) counts: Counts,
+}
+
+impl Measured {
+    /// The measures of a mesh at rest that stays as it is.
+    pub(super) fn of_unrefined(tolerance: &StepTolerance, limits: &Limits, mesh: &Mesh) -> Self {
+        let observer = tolerance.view.observer_rest();
+        let found = survey(mesh, observer, f64::INFINITY, &limits.whole);
+        Self {
+            gap: found.gap,
+            counts: Counts {
+                triangles_in: mesh.triangles().len(),
+                triangles_out: mesh.triangles().len(),
+                minimum_triangles: found.minimum_triangles,
+            },
+        }
+    }
+}
+
+/// The certificate of a mesh at rest, refined or not, that is `seen` like this.
+///
+/// `around` is the box, in the observer's frame, around all parts that share an offset in a file with this one.
+pub(super) fn certificate(
+    tolerance: &StepTolerance,
+    limits: &Limits,
+    mesh: &Mesh,
+    seen: &MappedMesh,
+    around: Option<(DVec3, DVec3)>,
+    measured: Measured,
+) -> Certificate {
+    let Measured { gap, counts } = measured;
+    let gamma_beta = tolerance.view.relative_velocity().gamma_beta();
+    let bounds = Bounds {
+        gap: gamma_beta * gap * (1.0 + 4.0 * f64::EPSILON),
+        deviation: tolerance.deviation,
+        curvature: limits.curvature,
+        rounding: tolerance.rounding(mesh, &seen.extremes, around, 0.0),
+    };
+    match (tolerance.tolerance.unit(), tolerance.tolerance.number()) {
+        (Unit::Degrees, degrees) => {
+            Certificate::of_angles(degrees, &tolerance.view, mesh, bounds, counts)
+        }
+        _ => Certificate::of_lengths(tolerance.length, bounds, counts),
+    }
+}

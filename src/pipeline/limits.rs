@@ -1,0 +1,323 @@
+//! The errors that the tolerance of one object allows at one step: its shares for curvature, rounding and gap.
+//!
+//! All lengths are in the unit of the scene. The tolerance, curvature and rounding are lengths in the observer's frame;
+//! the deviation of facets from a curved surface, and the gap `e` of an [`Allowance`], are lengths in the object's rest
+//! frame. A certificate adds up, in the observer's frame, `gamma beta e`, curvature and rounding.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::mapped_mesh::MappedMesh;
+use super::placed_object::PlacedObject;
+use crate::light_cone::{Extremes, View};
+use crate::material::Part;
+use crate::mesh::Mesh;
+use crate::scene::{Tolerance, Unit};
+use crate::spacetime::length;
+use crate::tessellate::{
+    Allowance, Precision, Singles, largest_gap, local_stretch, nearest_point, rounding_bound,
+};
+
+/// The fraction of a curved shape's tolerance that its facets may take by their distance from the curved surface; the
+/// rest is for the gap.
+///
+/// Facets small enough for the curvature have small gaps already: a smaller fraction would make more facets, a larger
+/// one would leave too little for the gap of the few facets near the observer.
+const CURVATURE_SHARE: f64 = 0.7;
+
+/// The factor on the gap's share of a tolerance; the missing thousandth is room for the roundings in the sums of a
+/// certificate.
+const ROOM: f64 = 0.999;
+
+/// The fraction of a tolerance that the gap gets where curvature and rounding take more than the whole; the certificate
+/// then says that the tolerance is exceeded.
+pub(super) const MIN_GAP_SHARE: f64 = 0.1;
+
+/// The smallest seen distance at which a tolerance in degrees becomes a length in the observer's frame, as a fraction of
+/// the diagonal of the object as seen. An observer who touches a curved shape sees every facet under a large angle.
+const MIN_DISTANCE: f64 = 0.01;
+
+/// The same fraction for the facets of a curved shape that the observer does not touch: a smaller distance is as good
+/// as touching.
+const MIN_DISTANCE_UNTOUCHED: f64 = 1e-5;
+
+/// The same fraction for the gap: where the observer touches a surface, every gap is seen under the same angle, and
+/// without a smallest distance triangles would be divided without end.
+const MIN_DISTANCE_OF_GAP: f64 = 1e-6;
+
+/// The rounding at corners, as a fraction of the tolerance aimed at, up to which the rounding of vertices that
+/// refinement adds is not computed: even ten times as much would fit into [`ROOM`].
+const LITTLE_ROUNDING: f64 = 1e-4;
+
+/// The tolerance of one object at one step, with all that decides how it is divided.
+pub(super) struct StepTolerance {
+    pub(super) view: View,
+    /// The tolerance of the scene: certificates are about it.
+    pub(super) tolerance: Tolerance,
+    /// The same as a length in the observer's frame; an angle at the nearest vertex.
+    pub(super) length: f64,
+    /// The tolerance that refinement aims at: that of the scene, or a looser one where triangles are limited.
+    pub(super) aimed: Tolerance,
+    /// The same as a length in the observer's frame; an angle at the nearest vertex.
+    pub(super) aimed_length: f64,
+    /// The largest distance of facets from their curved surface, a length at rest; zero for a flat object.
+    pub(super) deviation: f64,
+    /// The same distance for the shape as it was placed, whatever resolution it gets.
+    placed_deviation: f64,
+    /// The digits of the numbers in the file.
+    precision: Precision,
+    /// Low and high corner, in the observer's frame, of the box around all steps, where all steps share one mesh in a
+    /// file as morph targets.
+    pub(super) box_of_all_steps: Option<(DVec3, DVec3)>,
+}
+
+/// The division of a tolerance: one for all parts of an object, so that parts that share an edge divide it alike.
+#[derive(Clone, Copy)]
+pub(super) struct Limits {
+    /// A bound of the distance between the photosurfaces of the facets and of their curved surface, a length in the
+    /// observer's frame.
+    pub(super) curvature: f64,
+    /// A bound of the rounding of every vertex, a length in the observer's frame.
+    pub(super) rounding: f64,
+    /// The length aimed at minus curvature and rounding, in the observer's frame; negative where these take more.
+    pub(super) left: f64,
+    /// The gap `e` at rest that curvature and rounding leave of the tolerance aimed at.
+    pub(super) allowance: Allowance,
+    /// The gap `e` at rest that the whole tolerance of the scene would allow.
+    pub(super) whole: Allowance,
+}
+
+impl StepTolerance {
+    /// The tolerance of an object whose parts, as placed, are `seen` like this; its facets are taken for flat until
+    /// `deviation` is set.
+    pub(super) fn new(
+        placed_object: &PlacedObject,
+        view: View,
+        tolerance: Tolerance,
+        precision: Precision,
+        seen: &[MappedMesh],
+    ) -> Self {
+        let shaped = placed_object.shaped.as_ref();
+        let aimed = tolerance.times(placed_object.loosening);
+        Self {
+            view,
+            tolerance,
+            length: length_of(tolerance, seen),
+            aimed,
+            aimed_length: length_of(aimed, seen),
+            deviation: 0.0,
+            placed_deviation: shaped.map_or(0.0, |shaped| shaped.deviation),
+            precision,
+            box_of_all_steps: None,
+        }
+    }
+
+    /// The limits of these parts, each of whose facets stands for `each` smaller ones.
+    pub(super) fn limits(
+        &self,
+        parts: &[(String, Part)],
+        seen: &[MappedMesh],
+        each: f64,
+    ) -> Limits {
+        let mut curvature = 0.0;
+        if self.deviation > 0.0 {
+            let mesh = parts[0].1.mesh();
+            let stretches = mesh.triangles().par_iter().map(|corners| {
+                let positions = corners.map(|corner| mesh.positions()[corner as usize]);
+                local_stretch(&self.view, shrunk(positions, each))
+            });
+            curvature = self.deviation * stretches.reduce(|| 0.0, f64::max);
+        }
+        let rounding = self.rounding_of_all(parts, seen);
+        let left = self.aimed_length - curvature - rounding;
+        Limits {
+            curvature,
+            rounding,
+            left,
+            allowance: self.allowance(self.aimed, left, curvature, rounding, seen),
+            whole: self.allowance(self.tolerance, self.length, 0.0, 0.0, seen),
+        }
+    }
+
+    /// Low and high corner, in the observer's frame, of the box whose middle is the offset of all these parts in a file:
+    /// one for all, so that corners which parts share are the same numbers in each.
+    pub(super) fn box_around<'s>(
+        &self,
+        seen: impl IntoIterator<Item = &'s MappedMesh>,
+    ) -> Option<(DVec3, DVec3)> {
+        self.box_of_all_steps.or_else(|| bounds(seen))
+    }
+
+    /// A bound of the distance, in the observer's frame, by which rounding moves any vertex of a mesh.
+    ///
+    /// Vertices that refinement will add are included where the photosurface is at most `bulge` beyond the flat
+    /// triangles between the vertices of the mesh, a length in the observer's frame. `around` is the box around all
+    /// parts.
+    pub(super) fn rounding(
+        &self,
+        mesh: &Mesh,
+        seen: &Extremes,
+        around: Option<(DVec3, DVec3)>,
+        bulge: f64,
+    ) -> f64 {
+        let (center, radius) = ball(mesh);
+        let stretch = self.view.stretch_bound(center, radius);
+        let in_file = match (self.precision, around) {
+            (Precision::Single, Some((low, high))) => Some(Singles {
+                extent: high - low + bulge,
+                roundings: if self.box_of_all_steps.is_some() {
+                    3.0
+                } else {
+                    1.0
+                },
+            }),
+            _ => None,
+        };
+        rounding_bound(&self.view, seen, stretch, in_file) + 16.0 * f64::EPSILON * bulge
+    }
+
+    /// The same bound for all parts, also for vertices that refinement will add where these matter.
+    fn rounding_of_all(&self, parts: &[(String, Part)], seen: &[MappedMesh]) -> f64 {
+        let around = self.box_around(seen);
+        let largest = |bulge: f64| {
+            let of_each = seen
+                .iter()
+                .zip(parts)
+                .map(|(seen, (_, part))| self.rounding(part.mesh(), &seen.extremes, around, bulge));
+            of_each.fold(0.0, f64::max)
+        };
+        let of_corners = largest(0.0);
+        if of_corners > LITTLE_ROUNDING * self.aimed_length {
+            let observer = self.view.observer_rest();
+            let gaps = parts
+                .iter()
+                .map(|(_, part)| largest_gap(part.mesh(), observer));
+            largest(self.view.relative_velocity().gamma_beta() * gaps.fold(0.0, f64::max))
+        } else {
+            of_corners
+        }
+    }
+
+    /// The largest distance from a curved surface, a length at rest, that the tolerance aimed at allows facets. `mesh` is
+    /// the shape as it was placed; `seen` are all parts.
+    pub(super) fn max_deviation(&self, mesh: &Mesh, seen: &[MappedMesh]) -> f64 {
+        let rounding = self.rounding(mesh, &seen[0].extremes, self.box_around(seen), 0.0);
+        let left = (self.aimed_length - rounding).max(0.5 * self.aimed_length);
+        let offsets_of = |corners: &[u32; 3]| {
+            corners.map(|corner| mesh.positions()[corner as usize] - self.view.observer_rest())
+        };
+        let touched = || {
+            let mut facets = mesh.triangles().iter().map(offsets_of);
+            facets.any(|offsets| self.nearest(offsets) == DVec3::ZERO)
+        };
+        let min_length = match (self.aimed.unit(), self.aimed.number()) {
+            (Unit::Degrees, degrees) => {
+                let share = if touched() {
+                    MIN_DISTANCE
+                } else {
+                    MIN_DISTANCE_UNTOUCHED
+                };
+                share * diagonal(seen) * degrees.to_radians().sin()
+            }
+            _ => 0.0,
+        };
+        let allowed = |corners: &[u32; 3]| {
+            let positions = corners.map(|corner| mesh.positions()[corner as usize]);
+            let here = match (self.aimed.unit(), self.aimed.number()) {
+                (Unit::Degrees, degrees) => {
+                    let nearest = self.view.seen_distance(self.nearest(offsets_of(corners)));
+                    // The facets that this leads to are other ones: a little room for their distances.
+                    (0.9 * degrees.to_radians().sin() * nearest).max(min_length)
+                }
+                _ => left,
+            };
+            here / local_stretch(&self.view, positions)
+        };
+        let all = mesh.triangles().par_iter().map(allowed);
+        CURVATURE_SHARE * all.reduce(|| f64::INFINITY, f64::min)
+    }
+
+    /// The place of a facet nearest to the observer, or a place nearer than any of the curved surface that the facet
+    /// stands for; like the `offsets` of its corners, in the rest frame and relative to the observer.
+    pub(super) fn nearest(&self, offsets: [DVec3; 3]) -> DVec3 {
+        let nearest = nearest_point(offsets);
+        nearest * (1.0 - self.placed_deviation / nearest.length()).max(0.0)
+    }
+
+    /// The gap `e` at rest that a tolerance allows when `curvature` and `rounding` leave `left` of its length, all three
+    /// in the observer's frame.
+    fn allowance(
+        &self,
+        tolerance: Tolerance,
+        left: f64,
+        curvature: f64,
+        rounding: f64,
+        seen: &[MappedMesh],
+    ) -> Allowance {
+        let velocity = self.view.relative_velocity();
+        let (gamma, gamma_beta) = (velocity.gamma(), velocity.gamma_beta());
+        match (tolerance.unit(), tolerance.number()) {
+            (Unit::Degrees, degrees) => {
+                // (gamma beta e + rounding) / (distance - gamma e - rounding) <= s, solved for e. The share of curvature
+                // is in proportion to the distance.
+                let s = degrees.to_radians().sin();
+                let left = if curvature > 0.0 {
+                    (1.0 - CURVATURE_SHARE * (1.0 + s)).max(MIN_GAP_SHARE)
+                } else {
+                    1.0
+                };
+                let share = ROOM / (gamma_beta + gamma * s);
+                Allowance::Angle {
+                    view: self.view,
+                    share: s * left * share,
+                    less: (1.0 + s) * rounding * share,
+                    least: MIN_DISTANCE_OF_GAP * diagonal(seen) * s * share,
+                }
+            }
+            _ => {
+                let min_left = MIN_GAP_SHARE * length_of(tolerance, seen);
+                Allowance::Everywhere(ROOM * left.max(min_left) / gamma_beta)
+            }
+        }
+    }
+}
+
+/// A tolerance as a length in the observer's frame; an angle at the nearest vertex.
+fn length_of(tolerance: Tolerance, seen: &[MappedMesh]) -> f64 {
+    match (tolerance.unit(), tolerance.number()) {
+        (Unit::Absolute, length) => length,
+        (Unit::Relative, fraction) => fraction * diagonal(seen),
+        (Unit::Degrees, degrees) => {
+            let distances = seen.iter().map(|seen| seen.extremes.nearest);
+            let nearest = distances.fold(f64::INFINITY, f64::min);
+            degrees.to_radians().sin() * nearest.max(MIN_DISTANCE * diagonal(seen))
+        }
+    }
+}
+
+/// Low and high corner of the box around meshes as seen, in the observer's frame.
+pub(super) fn bounds<'s>(seen: impl IntoIterator<Item = &'s MappedMesh>) -> Option<(DVec3, DVec3)> {
+    let boxes = seen.into_iter().filter_map(|seen| seen.extremes.bounds());
+    boxes.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
+}
+
+/// The length of the diagonal of that box.
+fn diagonal(seen: &[MappedMesh]) -> f64 {
+    bounds(seen).map_or(0.0, |(low, high)| length(high - low))
+}
+
+/// One of `parts` equal triangles that a triangle is made of, in its middle.
+pub(super) fn shrunk(corners: [DVec3; 3], parts: f64) -> [DVec3; 3] {
+    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+    corners.map(|corner| middle + (corner - middle) / parts.sqrt())
+}
+
+/// Center and radius of a ball around a mesh at rest.
+fn ball(mesh: &Mesh) -> (DVec3, f64) {
+    let (low, high) = mesh.bounds().unwrap_or_default();
+    // Rounded up: the corners of the box are in it.
+    (
+        0.5 * low + 0.5 * high,
+        0.5 * length(high - low) * (1.0 + 1e-12),
+    )
+}

@@ -1,0 +1,150 @@
+//! The surfaces of one object at one step, made as its plan allows: refined, mapped, and certified.
+
+use std::borrow::Cow;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::SurfaceOptions;
+use super::certifying::{Measured, certificate};
+use super::limits::Limits;
+use super::mapped_mesh::MappedMesh;
+use super::plan::{Draft, Plan};
+use crate::material::Part;
+use crate::mesh::Mesh;
+use crate::tessellate::{Certificate, Counts, Refined, refine};
+
+/// A part of the object, refined and seen.
+pub(super) struct Surface<'a> {
+    /// Its name in files.
+    pub(super) name: String,
+    /// The part at rest; that of the placed scene where nothing was refined.
+    pub(super) part: Cow<'a, Part>,
+    /// The part in the observer's frame.
+    pub(super) seen: MappedMesh,
+    /// Low and high corner, in the observer's frame, of the box around all parts of the object that share an offset in a
+    /// file with this one.
+    pub(super) around: (DVec3, DVec3),
+    pub(super) certificate: Certificate,
+}
+
+/// A part of the object in its final form, before its certificate: that needs the box around all parts.
+struct Uncertified<'a> {
+    name: String,
+    part: Cow<'a, Part>,
+    seen: MappedMesh,
+    measured: Measured,
+}
+
+/// Carries out a plan: refines where that is wanted, maps, and certifies.
+pub(super) fn make(mut plan: Plan<'_>, wanted: SurfaceOptions) -> Vec<Surface<'_>> {
+    let Draft {
+        parts,
+        seen,
+        limits,
+    } = plan.draft();
+    let refined = match plan.refines(wanted) {
+        true => {
+            let meshes: Vec<&Mesh> = parts.iter().map(|(_, part)| part.mesh()).collect();
+            let refined = refine_parts(&plan, &meshes, &limits, plan.granted);
+            refined.into_iter().map(Some).collect()
+        }
+        false => vec![None; parts.len()],
+    };
+    let before = each_part(parts).into_par_iter().zip(seen);
+    let made: Vec<Uncertified<'_>> = before
+        .zip(refined)
+        .map(|((named, seen), refined)| match refined {
+            Some(refined) => with_refined(&plan, named, seen, refined),
+            None => as_drafted(&plan, &limits, named, seen),
+        })
+        .collect();
+    // Refinement adds vertices beyond the box around the draft.
+    let tolerance = &plan.tolerance;
+    let around = tolerance.box_around(made.iter().map(|made| &made.seen));
+    let surfaces = made.into_par_iter().map(|made| {
+        let mesh = made.part.mesh();
+        let certificate = certificate(tolerance, &limits, mesh, &made.seen, around, made.measured);
+        Surface {
+            name: made.name,
+            part: made.part,
+            seen: made.seen,
+            around: around.unwrap_or_default(),
+            certificate,
+        }
+    });
+    surfaces.collect()
+}
+
+/// Refines the meshes of all parts at rest, within `granted` triangles beyond those of the source.
+pub(super) fn refine_parts(
+    plan: &Plan<'_>,
+    meshes: &[&Mesh],
+    limits: &Limits,
+    granted: u64,
+) -> Vec<Refined> {
+    let before: usize = meshes.iter().map(|mesh| mesh.triangles().len()).sum();
+    let more = plan.max_triangles(granted).saturating_sub(before as u64);
+    let observer = plan.view().observer_rest();
+    refine(meshes, observer, &limits.allowance, &limits.whole, more)
+}
+
+/// A part that keeps the mesh of its draft.
+fn as_drafted<'a>(
+    plan: &Plan<'_>,
+    limits: &Limits,
+    (name, part): (String, Cow<'a, Part>),
+    seen: MappedMesh,
+) -> Uncertified<'a> {
+    Uncertified {
+        measured: Measured::of_unrefined(&plan.tolerance, limits, part.mesh()),
+        name,
+        part,
+        seen,
+    }
+}
+
+/// A part with its refined mesh, mapped again where that has more vertices than the draft.
+fn with_refined<'a>(
+    plan: &Plan<'_>,
+    (name, part): (String, Cow<'a, Part>),
+    seen: MappedMesh,
+    refined: Refined,
+) -> Uncertified<'a> {
+    let mesh = part.mesh();
+    let seen = if refined.mesh.positions().len() == mesh.positions().len() {
+        seen
+    } else {
+        MappedMesh::new(plan.view(), &refined.mesh)
+    };
+    let counts = Counts {
+        triangles_in: mesh.triangles().len(),
+        triangles_out: refined.mesh.triangles().len(),
+        minimum_triangles: refined.minimum_triangles,
+    };
+    Uncertified {
+        name,
+        part: Cow::Owned(part.with_mesh(refined.mesh)),
+        seen,
+        measured: Measured {
+            gap: refined.gap,
+            counts,
+        },
+    }
+}
+
+/// The parts one by one, borrowed where all are borrowed.
+fn each_part(parts: Cow<'_, [(String, Part)]>) -> Vec<(String, Cow<'_, Part>)> {
+    match parts {
+        Cow::Borrowed(parts) => {
+            let parts = parts.iter();
+            parts
+                .map(|(name, part)| (name.clone(), Cow::Borrowed(part)))
+                .collect()
+        }
+        Cow::Owned(parts) => {
+            let parts = parts.into_iter();
+            parts.map(|(name, part)| (name, Cow::Owned(part))).collect()
+        }
+    }
+}
