@@ -420,6 +420,9 @@ mod tests {
             let error = plain.outside_cameras(Some(bad), &places).unwrap_err();
             assert!(matches!(error, FramingError::NotFinite(_)), "{error}");
         }
+        let middle = [vec![DVec3::ZERO]];
+        let error = plain.outside_cameras(Some(DVec3::ZERO), &middle);
+        assert!(matches!(error, Err(FramingError::CameraInMiddle(_))));
     }
 
     #[test]

@@ -66,7 +66,7 @@ pub struct PictureSettings {
     pub view: PictureView,
     /// The settings of the cameras. On a sheet the size is the size of each view.
     pub camera: CameraSettings,
-    /// Number of rays along each side of a pixel: N gives N x N rays per pixel.
+    /// Number of rays along each side of a pixel: N gives N x N rays per pixel. More than 1024 count as 1024.
     pub samples: NonZeroU32,
     /// The colour where nothing is seen.
     pub background: Color,

@@ -10,7 +10,7 @@ pub trait Progress: Sync {
     /// pictures.
     fn begin(&self, pieces: usize);
 
-    /// `pieces` more pieces of work are done.
+    /// `pieces` more pieces of work are done; 0 where a job only asks whether it is to go on.
     ///
     /// # Errors
     ///

@@ -11,7 +11,9 @@ use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
 use super::progress::Progress;
 use super::rendered::{EmptyView, RenderError, Rendered, ViewCost};
 use crate::pipeline::{PlacedScene, PlacedSceneError};
-use crate::render::{Camera, Picture, PictureOptions, Scenery, Strokes, Textures, Viewpoint};
+use crate::render::{
+    Camera, Picture, PictureOptions, Scenery, Strokes, Textures, Viewpoint, grid_places,
+};
 use crate::shape::Color;
 
 /// The colour of wires, visible on light and on dark surfaces.
@@ -201,13 +203,9 @@ impl<'a> Views<'a> {
         let row_done = || self.progress.advance(1);
         let picture = scenery.try_picture(camera, viewpoint, options, row_done)?;
         let seconds = start.elapsed().as_secs_f64();
-        let [width, height, samples] = [
-            camera.size().width(),
-            camera.size().height(),
-            options.samples,
-        ]
-        .map(u64::from);
-        let rays = (width * height).saturating_mul(samples * samples);
+        let (width, height) = (camera.size().width(), camera.size().height());
+        let of_a_pixel = grid_places(options.samples).count() as u64;
+        let rays = u64::from(width) * u64::from(height) * of_a_pixel;
         Ok((picture, ViewCost { rays, seconds }))
     }
 }
