@@ -427,3 +427,27 @@ fn a_tolerance_that_was_not_found_is_not_advised() {
         );
     }
 }
+
+/// A budget that holds the predicted triangles loosens no aim, and no message says that a budget is less than a number
+/// below it. The cube takes fewer than predicted.
+#[test]
+fn a_budget_of_the_predicted_triangles_loosens_nothing() {
+    let workplace = Workplace::new();
+    for (example, tolerance) in [("cube", "1e-2"), ("sphere", "1e-3"), ("street", "1e-3")] {
+        let flags = format!("--example {example} --tolerance {tolerance}");
+        let check = workplace.run(&format!("check {flags}")).success();
+        let text = check.stdout_text().replace(',', "");
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let about = words.iter().rposition(|word| *word == "about").unwrap();
+        let budget = words[about + 1].parse::<u64>().unwrap() + 1;
+        let run = workplace.run(&format!(
+            "export {flags} --max-triangles {budget} -o out.glb"
+        ));
+        assert!(!run.stderr.contains("the tolerance needs"), "{run}");
+        if example == "cube" {
+            let budget = budget + budget / 10;
+            let flags = format!("{flags} --max-triangles {budget} -o out.glb");
+            workplace.run(&format!("export {flags}")).success();
+        }
+    }
+}

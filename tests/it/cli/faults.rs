@@ -437,3 +437,19 @@ fn no_number_of_a_report_is_null() {
     }
     assert!(begun.elapsed() < Duration::from_secs(60));
 }
+
+/// The meshes that a study makes are among the system's temporary files, in a folder that goes with the program.
+#[test]
+fn a_study_that_is_interrupted_leaves_no_folder() {
+    for signal in ["INT", "TERM"] {
+        let workplace = Workplace::with_ball();
+        let before = workplace.files();
+        let status = workplace.interrupt(
+            "cost ball.json --only meshes --tolerances 1e-6 --repeats 1000",
+            signal,
+            |files| files.iter().any(|file| file.starts_with(".photosurface-")),
+        );
+        assert_eq!(status, Some(130), "{signal}");
+        assert_eq!(workplace.files(), before, "{signal}");
+    }
+}

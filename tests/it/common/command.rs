@@ -104,6 +104,8 @@ impl Workplace {
         let mut child = Command::new(env!("CARGO_BIN_EXE_photosurface"))
             .args(arguments.split_whitespace())
             .current_dir(self.directory.path())
+            // What waits among the system's temporary files is seen here, too.
+            .env("TMPDIR", self.directory.path())
             .stderr(Stdio::null())
             .spawn()
             .expect("the program starts");
