@@ -1,5 +1,6 @@
 //! A triangle mesh at rest, checked wherever it comes from.
 
+use std::any::Any;
 use std::sync::{Arc, OnceLock};
 
 use glam::{DAffine3, DMat3, DVec3, DVec4, Vec2, Vec4};
@@ -25,6 +26,8 @@ pub struct Mesh {
     colors: Option<Arc<Vec<Vec4>>>,
     /// Of the positions, once someone has asked.
     extent: Remembered<Option<Extent>>,
+    /// A value that determines positions and triangles, as long as they are as it made them.
+    maker: Remembered<Arc<dyn Any + Send + Sync>>,
 }
 
 /// Why data does not make a [`Mesh`].
@@ -185,6 +188,21 @@ impl Mesh {
         self.extent().is_none_or(|extent| extent.is_finite)
     }
 
+    /// The mesh with the value that its positions and triangles were made from, for a comparison without making them again.
+    /// The mesh forgets the value as soon as either changes.
+    pub(crate) fn made_by(self, maker: impl Any + Send + Sync) -> Self {
+        let maker: Arc<dyn Any + Send + Sync> = Arc::new(maker);
+        Self {
+            maker: Remembered(OnceLock::from(maker)),
+            ..self
+        }
+    }
+
+    /// The value that positions and triangles were made from, if one of this type is known.
+    pub(crate) fn maker<T: Any>(&self) -> Option<&T> {
+        self.maker.0.get()?.downcast_ref()
+    }
+
     fn extent(&self) -> Option<Extent> {
         *self.extent.0.get_or_init(|| {
             // The same jobs for any number of threads, for which of 0 and -0 is less depends on their order.
@@ -204,6 +222,7 @@ impl Mesh {
             return self;
         }
         self.extent = Remembered::default();
+        self.maker = Remembered::default();
         change_shared(&mut self.positions, |position| {
             transform.transform_point3(position)
         });
@@ -256,6 +275,7 @@ impl Mesh {
             texture_coordinates: texture_coordinates.into_iter().map(Into::into).collect(),
             colors: colors.map(Into::into),
             extent: Remembered::default(),
+            maker: Remembered::default(),
         }
     }
 
@@ -275,6 +295,7 @@ impl Mesh {
             texture_coordinates: self.texture_coordinates.clone(),
             colors: self.colors.clone(),
             extent: Remembered::default(),
+            maker: Remembered::default(),
         }
     }
 
@@ -315,6 +336,7 @@ impl Mesh {
                 .collect(),
             colors: self.colors.as_ref().map(|colors| pick(colors, corners)),
             extent: Remembered::default(),
+            maker: Remembered::default(),
         })
     }
 }
@@ -352,8 +374,14 @@ impl Extent {
 }
 
 /// Something known of a mesh that is no part of what it is: all are alike.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct Remembered<T>(OnceLock<T>);
+
+impl<T> Default for Remembered<T> {
+    fn default() -> Self {
+        Self(OnceLock::new())
+    }
+}
 
 impl<T> PartialEq for Remembered<T> {
     fn eq(&self, _other: &Self) -> bool {

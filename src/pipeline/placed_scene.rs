@@ -308,6 +308,11 @@ fn is_of_its_shape(object: &Object, model: &Model) -> bool {
     let Source::Shape(shape, appearance) = &object.source else {
         return true;
     };
+    if let [part] = &model.parts[..]
+        && part.mesh().maker() == Some(shape)
+    {
+        return true;
+    }
     let Ok(made) = shape.model(appearance) else {
         return false;
     };

@@ -219,7 +219,8 @@ impl Shape {
             Self::Lattice(shape) => (shape.surface()?, Lattice::CHECKER_CELLS),
         };
         let material = checker::material(appearance, checker_cells);
-        let part = Part::new("", surface.into_mesh()?, Some(Arc::new(material)))?;
+        let mesh = surface.into_mesh()?.made_by(self.clone());
+        let part = Part::new("", mesh, Some(Arc::new(material)))?;
         Ok(Model {
             parts: vec![part],
             origin: None,

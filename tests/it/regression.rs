@@ -19,8 +19,8 @@ use photosurface::write::{
     Export, Playback, WriteError, abandon_writes, destination, write_glb, write_ply, write_whole,
 };
 use photosurface::{
-    DAffine3, DQuat, DVec2, DVec3, Mesh, Model, Object, Observer, Photosurface, PlacedScene, Scene,
-    Shape, Source, SurfaceOptions, Tolerance, Velocity, load_models,
+    DAffine3, DQuat, DVec2, DVec3, Mesh, Model, Object, Observer, Part, Photosurface, PlacedScene,
+    Scene, Shape, Source, SurfaceOptions, Tolerance, Velocity, load_models,
 };
 use serde_json::json;
 
@@ -587,7 +587,17 @@ fn the_model_of_a_shape_is_that_of_the_shape() {
     renamed.parts[0].name = "mine".to_owned();
     renamed.parts[0].material = None;
     assert_eq!(of(renamed), Ok(()));
-    for other in [Model::default(), shape(1.0, 3), shape(1.5, 48)] {
+    // The same numbers from elsewhere are the same mesh.
+    let mut copied = models[0].clone();
+    let mesh = copied.parts[0].mesh();
+    let copy = Mesh::new(mesh.positions().to_vec(), mesh.triangles().to_vec()).unwrap();
+    let copy = copy.with_normals(mesh.normals().unwrap().to_vec()).unwrap();
+    copied.parts[0] = Part::new("", copy, None).unwrap();
+    assert_eq!(of(copied), Ok(()));
+    let mut stretched = models[0].clone();
+    let part = stretched.parts.remove(0);
+    stretched.parts = vec![part.transformed(&DAffine3::from_scale(DVec3::new(1.0, 1.0, 1.1)))];
+    for other in [Model::default(), shape(1.0, 3), shape(1.5, 48), stretched] {
         let object = "ball".to_owned();
         assert_eq!(of(other), Err(PlacedSceneError::Shape { object }));
     }
