@@ -5,6 +5,7 @@ pub(crate) mod command;
 pub(crate) mod glb;
 pub(crate) mod oracle;
 pub(crate) mod passing;
+pub(crate) mod progress;
 pub(crate) mod refining;
 
 use photosurface::light_cone::PhotosurfaceMap;

@@ -4,16 +4,15 @@
 use std::fs;
 use std::num::NonZeroUsize;
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use photosurface::jobs::ExportError;
 use photosurface::write::Playback;
 use photosurface::{
-    Cancelled, CostSettings, CostStudy, ExportSettings, PlacedScene, Progress, Tolerance, export,
-    load_models,
+    CostSettings, CostStudy, ExportSettings, PlacedScene, Tolerance, export, load_models,
 };
 
 use crate::common::command::Workplace;
+use crate::common::progress::Pieces;
 
 /// A scene of two objects and three steps.
 const PASSING: &str = r#"{ "title": "Passing", "observer": { "velocity": { "beta": 0.9, "direction": [0, 0, -1] }, "marker": 0.1 },
@@ -27,28 +26,6 @@ const FRAMES: Playback = Playback::Frames {
 const MORPH: Playback = Playback::Morph {
     frames_per_second: 12.0,
 };
-
-/// Hears how many pieces there are and how many are done, and ends the job after so many.
-#[derive(Default)]
-struct Counted {
-    begun: AtomicUsize,
-    done: AtomicUsize,
-    last: Option<usize>,
-}
-
-impl Progress for Counted {
-    fn begin(&self, pieces: usize) {
-        self.begun.store(pieces, Ordering::Relaxed);
-    }
-
-    fn advance(&self, pieces: usize) -> Result<(), Cancelled> {
-        let done = self.done.fetch_add(pieces, Ordering::Relaxed) + pieces;
-        match self.last {
-            Some(last) if done > last => Err(Cancelled),
-            _ => Ok(()),
-        }
-    }
-}
 
 fn with_passing() -> (Workplace, PlacedScene) {
     let workplace = Workplace::with_ball();
@@ -136,7 +113,7 @@ fn the_library_writes_the_bytes_of_the_command() {
         let run = workplace.run(&format!(
             "export passing.json {flags} -o {theirs}.{extension}"
         ));
-        let progress = Counted::default();
+        let progress = Pieces::until(usize::MAX);
         let path = workplace.path(&format!("{ours}.{extension}"));
         let exported = export(&placed, &settings, &path, &progress).unwrap();
         let (theirs, ours) = (files(&workplace, &theirs), files(&workplace, &ours));
@@ -154,10 +131,7 @@ fn the_library_writes_the_bytes_of_the_command() {
         let certified = exported.iter().all(|level| level.tally.is_certified());
         assert_eq!(run.status, if certified { 0 } else { 1 }, "{flags}");
         let pieces = 6 * exported.len();
-        assert_eq!(
-            [progress.begun, progress.done].map(AtomicUsize::into_inner),
-            [pieces; 2]
-        );
+        assert_eq!(progress.begun_and_done(), (pieces, pieces));
         for level in &exported {
             assert_eq!(level.tally.photosurfaces, 6);
             assert_eq!(level.report.objects.len(), 6);
@@ -207,17 +181,14 @@ fn an_export_that_is_ended_leaves_what_stood_there() {
         workplace.write(&name, "before");
         let before = workplace.files();
         for last in 0..6 {
-            let progress = Counted {
-                last: Some(last),
-                ..Counted::default()
-            };
+            let progress = Pieces::until(last + 1);
             let settings = ExportSettings {
                 playback,
                 ..ExportSettings::default()
             };
             let ended = export(&placed, &settings, &workplace.path(&name), &progress);
             assert!(matches!(ended, Err(ExportError::Cancelled)), "{ended:?}");
-            assert_eq!(progress.done.into_inner(), last + 1);
+            assert_eq!(progress.begun_and_done(), (6, last + 1));
             assert_eq!(workplace.files(), before);
             assert_eq!(workplace.read(&name), b"before");
         }
@@ -280,10 +251,7 @@ fn settings_that_do_not_go_together_are_refused_before_the_work() {
     ];
     let before = workplace.files();
     for (name, settings, expected) in cases {
-        let progress = Counted {
-            last: Some(0),
-            ..Counted::default()
-        };
+        let progress = Pieces::until(1);
         let error = export(&placed, &settings, &workplace.path(name), &progress).unwrap_err();
         assert!(error.to_string().contains(expected), "{error}");
         assert_eq!(workplace.files(), before);

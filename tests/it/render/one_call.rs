@@ -1,15 +1,14 @@
 //! Pictures that the library draws with one call: the bytes are those of the command, and whoever calls may stop the work.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use photosurface::jobs::{Aim, FieldOfView, FramingError, Ghost, RenderError, Rendered};
 use photosurface::render::{Picture, PictureSize};
 use photosurface::{
-    Cancelled, DVec3, PictureMethod, PictureSettings, PictureView, PlacedScene, Progress, Scene,
-    Textures, load_models, render, render_to_files,
+    DVec3, PictureMethod, PictureSettings, PictureView, PlacedScene, Progress, Scene, Textures,
+    load_models, render, render_to_files,
 };
 
 use crate::common::command::{BALL, Workplace};
+use crate::common::progress::Pieces;
 
 const STEPS: [f64; 2] = [0.0, 3.0];
 
@@ -78,44 +77,6 @@ fn drawn(
     Ok((pictures, rendered))
 }
 
-/// Hears how much work there is and how much of it is done, and stops it from `end` rows on.
-struct Rows {
-    begun: AtomicUsize,
-    done: AtomicUsize,
-    end: usize,
-}
-
-impl Rows {
-    fn until(end: usize) -> Self {
-        Self {
-            begun: AtomicUsize::new(0),
-            done: AtomicUsize::new(0),
-            end,
-        }
-    }
-
-    fn begun_and_done(&self) -> (usize, usize) {
-        let read = |number: &AtomicUsize| number.load(Ordering::SeqCst);
-        (read(&self.begun), read(&self.done))
-    }
-}
-
-impl Progress for Rows {
-    fn begin(&self, pieces: usize) {
-        let before = self.begun.swap(pieces, Ordering::SeqCst);
-        assert_eq!(before, 0, "a job begins once");
-    }
-
-    fn advance(&self, pieces: usize) -> Result<(), Cancelled> {
-        let done = self.done.fetch_add(pieces, Ordering::SeqCst) + pieces;
-        if done < self.end {
-            Ok(())
-        } else {
-            Err(Cancelled)
-        }
-    }
-}
-
 #[test]
 fn one_call_writes_the_files_of_the_command() {
     let workplace = Workplace::with_ball();
@@ -180,7 +141,7 @@ fn settings_mean_what_flags_of_the_command_do() {
 #[test]
 fn progress_hears_of_every_row_that_it_was_told_of() {
     for (view, flags, rows) in VIEWS {
-        let progress = Rows::until(usize::MAX);
+        let progress = Pieces::until(usize::MAX);
         let (_, rendered) = drawn(&settings(view), &progress).unwrap();
         assert_eq!(progress.begun_and_done(), (rows, rows), "{flags}");
         let rays: u64 = rendered.costs.iter().map(|cost| cost.rays).sum();
@@ -200,7 +161,7 @@ fn work_that_is_cancelled_ends_soon_and_says_so() {
     let threads = rayon::current_num_threads();
     for (view, flags, rows) in VIEWS {
         for end in [0, 7, rows / 2, rows - 1] {
-            let progress = Rows::until(end);
+            let progress = Pieces::until(end);
             let mut finished = 0;
             let (settings, textures) = (settings(view), Textures::default());
             let result = render(&ball(), &textures, &settings, &progress, |_, _| {
