@@ -132,14 +132,16 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     if format != Format::Ply {
         tell_replaced_names(&placed, &path, args.verbosity);
     }
-    let mut status = Status::Done;
-    for level in levels {
+    for level in &levels {
         level.check().map_err(|error| match error {
             ExportError::File { file, source } => {
                 or_ply(source, level.placed()).context(file.display().to_string())
             }
             error => error.into(),
         })?;
+    }
+    let mut status = Status::Done;
+    for level in levels {
         if !export(args, level)? {
             status = Status::NotCertified;
         }

@@ -236,20 +236,29 @@ impl FittedExport {
         let mut work = self.work(progress);
         let files = &self.level.files;
         let steps = work.placed.scene().steps().len();
-        if self.level.settings.split {
+        let report = if self.level.settings.split {
             for (step, file) in files.iter().enumerate() {
                 let written = work.write_file(file, step..step + 1, |_| Ok(()));
                 written.map_err(|error| ExportError::of_file(file, error))?;
             }
-            let done = before_it_appears(&work.report());
+            let report = work.take_report();
+            let done = before_it_appears(&report);
             done.map_err(|error| ExportError::of_file(&files[0], error))?;
+            report
         } else {
+            let mut report = None;
             let written = work.write_file(&files[0], 0..steps, |work| {
-                before_it_appears(&work.report())
+                before_it_appears(report.insert(work.take_report()))
             });
             written.map_err(|error| ExportError::of_file(&files[0], error))?;
-        }
-        Ok(exported(work, files.clone()))
+            report.unwrap_or_else(|| work.take_report())
+        };
+        Ok(Exported {
+            files: files.clone(),
+            data_files: work.data_files,
+            tally: work.tally,
+            report,
+        })
     }
 
     /// Makes all photosurfaces and writes them to a stream, as a PLY if that is the format, otherwise as a GLB.
@@ -266,7 +275,12 @@ impl FittedExport {
         let mut work = self.work(progress);
         let steps = work.placed.scene().steps().len();
         work.write_stream(out, 0..steps)?;
-        Ok(exported(work, vec![]))
+        Ok(Exported {
+            files: vec![],
+            data_files: vec![],
+            report: work.take_report(),
+            tally: work.tally,
+        })
     }
 
     fn work<'a>(&'a self, progress: &'a dyn Progress) -> Work<'a> {
@@ -287,14 +301,5 @@ impl FittedExport {
             facts: (level.settings.keep_facts || has_report).then(Vec::new),
             data_files: vec![],
         }
-    }
-}
-
-fn exported(mut work: Work<'_>, files: Vec<PathBuf>) -> Exported {
-    Exported {
-        files,
-        data_files: std::mem::take(&mut work.data_files),
-        tally: std::mem::take(&mut work.tally),
-        report: work.into_report(),
     }
 }

@@ -28,8 +28,8 @@ pub struct ExportSettings {
     pub max_triangles: u64,
     /// The file of a JSON [`Report`](crate::write::Report), if one is to be written; each level has its own.
     pub report: Option<PathBuf>,
-    /// Whether [`Exported`](super::Exported) holds the facts about every photosurface, which need about a kilobyte of
-    /// memory each.
+    /// Whether [`Exported`](super::Exported) holds the facts about every photosurface. Their memory grows with the number of
+    /// photosurfaces.
     pub keep_facts: bool,
     /// Stages that the caller has finished before the export, with their times, for the report.
     pub stages_before: Vec<StageTime>,

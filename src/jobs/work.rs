@@ -111,7 +111,7 @@ impl Work<'_> {
         &mut self,
         path: &Path,
         steps: Range<usize>,
-        before_it_appears: impl FnOnce(&Self) -> Result<(), WriteError>,
+        before_it_appears: impl FnOnce(&mut Self) -> Result<(), WriteError>,
     ) -> Result<(), WriteError> {
         match self.format {
             Format::Glb => write_whole_target(path, |target| {
@@ -145,20 +145,11 @@ impl Work<'_> {
         }
     }
 
-    /// The report of everything made so far, with the times of the stages.
-    pub(super) fn report(&self) -> Report {
+    /// The report of everything made, with the times of the stages. The facts go into it.
+    pub(super) fn take_report(&mut self) -> Report {
         Report {
             scene: self.placed.facts(),
-            objects: self.facts.clone().unwrap_or_default(),
-            stages: self.clock.stages().to_vec(),
-        }
-    }
-
-    /// The report of everything made, with the times of the stages.
-    pub(super) fn into_report(self) -> Report {
-        Report {
-            scene: self.placed.facts(),
-            objects: self.facts.unwrap_or_default(),
+            objects: self.facts.take().unwrap_or_default(),
             stages: self.clock.stages().to_vec(),
         }
     }

@@ -119,7 +119,7 @@ pub(super) fn mesh_cost(
     }
     let wrong = |source| StudyError::Export { tolerance, source };
     let max_triangles = settings.max_triangles.saturating_mul(PREDICTION_ROOM);
-    let export = Export::new(&placed, max_triangles).map_err(wrong)?;
+    let export = RepeatedExport::new(&placed, max_triangles).map_err(wrong)?;
     let counts_memory = restart_peak();
     let first = export.run(progress).map_err(wrong)?;
     let peak_memory_bytes = counts_memory.then(peak_bytes).flatten();
@@ -171,7 +171,7 @@ pub(super) fn mesh_cost(
 }
 
 /// The export of a placed scene to a GLB, again and again, in a folder of its own.
-struct Export {
+struct RepeatedExport {
     level: ExportLevel,
     folder: ScratchFolder,
 }
@@ -184,7 +184,7 @@ struct Run {
     bytes: u64,
 }
 
-impl Export {
+impl RepeatedExport {
     fn new(placed: &PlacedScene, max_triangles: u64) -> Result<Self, ExportError> {
         let folder = ScratchFolder::new().map_err(OutputError::from)?;
         let settings = ExportSettings {
