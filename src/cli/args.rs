@@ -1,13 +1,15 @@
 //! Flags that commands share: what to look at, and how to override what the scene says.
 
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Context, anyhow, ensure};
+use anyhow::{Context, anyhow, bail, ensure};
 use clap::Args;
-use photosurface::read::Access;
-use photosurface::scene::{MarkerRadius, Place, Time, even_steps};
-use photosurface::{DVec3, Observer, Scene, Velocity};
+use photosurface::jobs::{MAX_SCENE_BYTES, text_of};
+use photosurface::read::{Access, read_whole};
+use photosurface::scene::{FlightPlan, MarkerRadius, Place, Rotation, Time, Units, even_steps};
+use photosurface::spacetime::Integrator;
+use photosurface::{DQuat, DVec3, Observer, Scene, Velocity};
 
 /// What to look at.
 #[derive(Debug, Args)]
@@ -58,6 +60,20 @@ pub(super) struct ObserverArgs {
     /// scene's velocity; a mesh without a scene is seen from that side, at rest [default for a mesh: 0,0,-1]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     direction: Option<DVec3>,
+    /// Velocity of the observer in units of the speed of light, in place of a speed and a direction
+    #[arg(long, value_name = "BX,BY,BZ", value_parser = vector, allow_hyphen_values = true, conflicts_with_all = ["speed", "direction"])]
+    velocity: Option<DVec3>,
+    /// The observer's own axes at the observation: a unit quaternion that turns those of the observer's frame
+    /// [default for a mesh: 0,0,0,1]
+    #[arg(long, value_name = "X,Y,Z,W", value_parser = quaternion, allow_hyphen_values = true)]
+    orientation: Option<Rotation>,
+    /// What the observer does after the observation: a JSON file with a list of segments, or an object like { "flight": [{
+    /// "proper_time": 2, "acceleration": [0, 0, -0.5] }] }, as "flight" and "integrator" of an observer in a scene
+    #[arg(long, value_name = "FILE")]
+    flight: Option<PathBuf>,
+    /// How the flight is computed: exact, or by Euler's method or that of Runge and Kutta with steps of so much proper time
+    #[arg(long, value_name = "exact|euler:STEP|rk4:STEP", value_parser = integrator, allow_hyphen_values = true)]
+    integrator: Option<Integrator>,
     /// Place of the observation in the scene frame, in scene units [default for a mesh: two
     /// bounding-box diagonals in front of its centre, so that the observer moves towards it]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
@@ -83,10 +99,26 @@ impl ObserverArgs {
         self.observer.is_some()
     }
 
+    /// The file of the flight, which must not be written over.
+    pub(super) fn file(&self) -> Option<&Path> {
+        self.flight.as_deref()
+    }
+
     /// The scene with everything that the flags say.
     pub(super) fn apply(&self, scene: Scene) -> anyhow::Result<Scene> {
-        let mut observer = *scene.observer();
+        let mut observer = scene.observer().clone();
         observer.velocity = self.velocity(&observer)?;
+        if let Some(orientation) = self.orientation {
+            observer.orientation = orientation;
+        }
+        if let Some(path) = &self.flight {
+            let plan = read_flight(path, scene.units())?;
+            observer.flight = plan.segments;
+            observer.integrator = plan.integrator.unwrap_or(observer.integrator);
+        }
+        if let Some(integrator) = self.integrator {
+            observer.integrator = integrator;
+        }
         if let Some(position) = self.observer {
             observer.position = Place::new(position).context("--observer")?;
         }
@@ -101,7 +133,7 @@ impl ObserverArgs {
                 })?),
             };
         }
-        let scene = scene.with_observer(observer);
+        let scene = scene.with_observer(observer)?;
         match &self.steps {
             Some(Steps(steps)) => Ok(scene.with_steps(steps.clone()).context("--steps")?),
             None => Ok(scene),
@@ -109,6 +141,9 @@ impl ObserverArgs {
     }
 
     fn velocity(&self, observer: &Observer) -> anyhow::Result<Velocity> {
+        if let Some(vector) = self.velocity {
+            return Velocity::from_vector(vector).context("--velocity");
+        }
         let scene = observer.velocity;
         let direction = self.direction.unwrap_or(scene.heading());
         if self.direction.is_some() {
@@ -147,6 +182,37 @@ pub(super) fn vector(text: &str) -> anyhow::Result<DVec3> {
         anyhow::bail!("has {} numbers, expected 3: X,Y,Z", numbers.len());
     };
     Ok(DVec3::new(x, y, z))
+}
+
+/// `X,Y,Z,W`
+fn quaternion(text: &str) -> anyhow::Result<Rotation> {
+    let numbers = numbers(text)?;
+    let &[x, y, z, w] = numbers.as_slice() else {
+        anyhow::bail!("has {} numbers, expected 4: X,Y,Z,W", numbers.len());
+    };
+    Ok(Rotation::new(DQuat::from_xyzw(x, y, z, w))?)
+}
+
+/// `exact`, `euler:STEP` or `rk4:STEP`
+fn integrator(text: &str) -> anyhow::Result<Integrator> {
+    let made = match text.split_once(':') {
+        None if text == "exact" => return Ok(Integrator::Exact),
+        Some(("euler", step)) => Integrator::euler(number(step)?),
+        Some(("rk4", step)) => Integrator::runge_kutta_4(number(step)?),
+        _ => bail!("expected exact, euler:STEP or rk4:STEP, as in rk4:0.01"),
+    };
+    Ok(made?)
+}
+
+/// The flight of a file.
+fn read_flight(path: &Path, units: Option<Units>) -> anyhow::Result<FlightPlan> {
+    let place = || path.display().to_string();
+    let bytes = read_whole(path, MAX_SCENE_BYTES).map_err(|error| match error.file() {
+        Some(named) if named == path => anyhow::Error::new(error),
+        _ => anyhow::Error::new(error).context(place()),
+    })?;
+    let text = text_of(&bytes).with_context(place)?;
+    FlightPlan::from_json(text, units).with_context(place)
 }
 
 /// `A,B,C` or `FROM..TO/COUNT`

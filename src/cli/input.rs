@@ -116,7 +116,8 @@ impl Reading<'_> {
         let place = path.map_or(name.to_string(), |path| path.display().to_string());
         let read = self.access.load_models(&scene, directory);
         let (models, found) = read.with_context(|| place.clone())?;
-        let mut files: Vec<PathBuf> = path.map(Path::to_owned).into_iter().collect();
+        let named = path.into_iter().chain(self.observer.file());
+        let mut files: Vec<PathBuf> = named.map(Path::to_owned).collect();
         for (file, findings) in found {
             for note in findings.lines() {
                 self.verbosity
@@ -152,13 +153,15 @@ impl Reading<'_> {
         if !self.observer.has_place() {
             scene = stand_off(scene, &model)?;
         }
+        let mut files = findings.files;
+        files.extend(self.observer.file().map(Path::to_owned));
         Ok(Input {
             name: name.to_owned(),
             place,
             is_mesh: true,
             scene,
             models: vec![model],
-            files: findings.files,
+            files,
             textures: Textures::new(self.access.max_texture_pixels),
         })
     }

@@ -140,14 +140,22 @@ impl Access {
 ///
 /// An error is returned if the bytes are not text or the text is not a scene.
 pub fn scene_from_bytes(bytes: &[u8]) -> Result<Scene, SceneTextError> {
-    let text = std::str::from_utf8(bytes).map_err(|error| {
+    Ok(Scene::from_json(text_of(bytes)?)?)
+}
+
+/// The text of these bytes.
+///
+/// # Errors
+///
+/// An error names the first byte that is not part of text in UTF-8.
+pub fn text_of(bytes: &[u8]) -> Result<&str, SceneTextError> {
+    std::str::from_utf8(bytes).map_err(|error| {
         let offset = error.valid_up_to();
         SceneTextError::NotText {
             offset,
             byte: bytes[offset],
         }
-    })?;
-    Ok(Scene::from_json(text)?)
+    })
 }
 
 /// The scene with its observer at another position: two diagonals of the model's bounds from the centre of these
@@ -157,7 +165,7 @@ pub fn scene_from_bytes(bytes: &[u8]) -> Result<Scene, SceneTextError> {
 ///
 /// An error is returned if the observer's position is out of range.
 pub fn stand_off(scene: Scene, model: &Model) -> Result<Scene, PlaceError> {
-    let observer = *scene.observer();
+    let observer = scene.observer().clone();
     let position = match model.bounds() {
         None => DVec3::ZERO,
         Some((low, high)) => {
@@ -165,8 +173,10 @@ pub fn stand_off(scene: Scene, model: &Model) -> Result<Scene, PlaceError> {
             0.5 * (low + high) - observer.velocity.direction() * away
         }
     };
-    Ok(scene.with_observer(Observer {
+    let observer = Observer {
         position: Place::new(position)?,
         ..observer
-    }))
+    };
+    let moved = scene.with_observer(observer);
+    Ok(moved.expect("a flight is possible wherever it begins"))
 }

@@ -28,7 +28,9 @@ pub use export_settings::{ExportError, ExportSettings};
 pub use files::{OutputError, check_outputs, file_for_each_step, with_suffix};
 pub use framing::{Aim, CameraSettings, FieldOfView, FramingError, OBSERVER_FOV_DEG};
 pub use guides::{Ghost, Guides};
-pub use input::{InputError, MAX_SCENE_BYTES, SceneTextError, scene_from_bytes, stand_off};
+pub use input::{
+    InputError, MAX_SCENE_BYTES, SceneTextError, scene_from_bytes, stand_off, text_of,
+};
 pub use load::{FileFindings, LoadError, load_models};
 pub use picture_settings::{PictureMethod, PictureSettings, PictureView};
 pub use pictures::{render, render_to_files};

@@ -6,7 +6,9 @@ use std::sync::Arc;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
+use super::MomentFacts;
 use crate::scene::Scene;
+use crate::spacetime::{Integrator, Rotation, Segment, Steering};
 use crate::tessellate::Certificate;
 
 /// The facts about a photosurface, the same in files and in the report.
@@ -25,6 +27,9 @@ pub struct Facts {
     pub step: usize,
     /// Proper time of the observer at this step, counted from the observation event, in scene units.
     pub proper_time: f64,
+    /// The observer at this step, if it flies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub observer: Option<MomentFacts>,
     /// Lorentz factor of the observer's velocity in the object's rest frame, at this step.
     pub relative_gamma: f64,
     /// Rapidity of the observer's velocity in the object's rest frame, at this step.
@@ -66,12 +71,52 @@ pub struct SceneFacts {
     pub observer_gamma: f64,
     /// The observer's rapidity in the scene frame, at the observation event.
     pub observer_rapidity: f64,
+    /// Rotation of the observer's own axes after the boost, at the observation event: a unit quaternion; the
+    /// identity if absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub observer_orientation: Option<[f64; 4]>,
+    /// The segments of the observer's flight, counted from the observation event; none if the observer coasts.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub observer_flight: Vec<SegmentFacts>,
+    /// How the flight is computed, as scenes write it; "exact" if absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub observer_integrator: Option<Value>,
     /// Proper times of the observer at the steps, counted from the observation event, in scene units.
     pub steps: Vec<f64>,
     /// For each source that has a copyright or `extras` of its own: the names of the `objects` that use it, its
     /// `copyright` and its `extras`, unchanged.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sources: Vec<Value>,
+}
+
+/// A segment of a flight, as scenes write it, in scene units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SegmentFacts {
+    /// Duration in the observer's proper time.
+    pub proper_time: f64,
+    /// Proper acceleration in the observer's own axes.
+    pub acceleration: [f64; 3],
+    /// Turn rate in the observer's own axes, in radians; none for coordinated steering, where it follows from the
+    /// acceleration.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turn_rate: Option<[f64; 3]>,
+    /// "free" or "coordinated".
+    pub steer: &'static str,
+}
+
+impl SegmentFacts {
+    fn new(segment: &Segment) -> Self {
+        let (turn_rate, steer) = match segment.steering() {
+            Steering::Free { turn_rate } => (Some(turn_rate.to_array()), "free"),
+            Steering::Coordinated => (None, "coordinated"),
+        };
+        Self {
+            proper_time: segment.proper_time(),
+            acceleration: segment.acceleration().to_array(),
+            turn_rate,
+            steer,
+        }
+    }
 }
 
 impl SceneFacts {
@@ -87,6 +132,14 @@ impl SceneFacts {
             observer_beta: observer.velocity.beta(),
             observer_gamma: observer.velocity.gamma(),
             observer_rapidity: observer.velocity.rapidity(),
+            observer_orientation: (observer.orientation != Rotation::IDENTITY)
+                .then(|| observer.orientation.get().to_array()),
+            observer_flight: observer.flight.iter().map(SegmentFacts::new).collect(),
+            observer_integrator: match observer.integrator {
+                Integrator::Exact => None,
+                Integrator::Euler(step) => Some(json!({ "euler": step.get() })),
+                Integrator::RungeKutta4(step) => Some(json!({ "rk4": step.get() })),
+            },
             steps: scene.steps().to_vec(),
             sources: sources(scene, origins),
         }

@@ -7,6 +7,7 @@ mod facts;
 mod limits;
 mod making;
 mod mapped_mesh;
+mod moment_facts;
 mod morph;
 mod names;
 mod photosurface;
@@ -20,7 +21,8 @@ mod vertex_data;
 
 pub use budget::Prediction;
 pub use error::PlacedSceneError;
-pub use facts::{Facts, SceneFacts};
+pub use facts::{Facts, SceneFacts, SegmentFacts};
+pub use moment_facts::MomentFacts;
 pub use names::step_label;
 pub use photosurface::Photosurface;
 pub use placed_scene::PlacedScene;

@@ -11,7 +11,7 @@ use super::names::{self, UniqueNames, step_label};
 use super::placed_object::{PlacedObject, Shaped, triangle_count};
 use super::plan::{Plan, Unrefined};
 use super::vertex_data::VertexData;
-use super::{Photosurface, PlacedSceneError, SurfaceOptions};
+use super::{MomentFacts, Photosurface, PlacedSceneError, SurfaceOptions};
 use crate::light_cone::View;
 use crate::material::{Model, Part};
 use crate::scene::{MarkerRadius, Object, Scene, Source, Tolerance};
@@ -70,6 +70,15 @@ impl PlacedScene {
             });
         }
         check_rapidity("the observer", scene.observer().velocity)?;
+        if !scene.observer().flight.is_empty() {
+            for &proper_time in scene.steps() {
+                let velocity = scene.flight().moment(proper_time).velocity();
+                check_rapidity(
+                    &format!("the observer at proper time {proper_time}"),
+                    velocity,
+                )?;
+            }
+        }
         for (object, model) in objects.iter().zip(&models) {
             check_rapidity(&format!("object \"{}\"", object.name), object.velocity)?;
             if !is_of_its_shape(object, model) {
@@ -273,6 +282,8 @@ impl PlacedScene {
             source: surface.part.extras.clone(),
             step,
             proper_time: steps[step],
+            observer: (!self.scene.observer().flight.is_empty())
+                .then(|| MomentFacts::new(self.scene.flight(), steps[step])),
             relative_gamma: relative.gamma(),
             relative_rapidity: relative.rapidity(),
             vertices: surface.seen.mesh.positions().len(),

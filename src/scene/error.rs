@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::spacetime::{FlightError, SegmentError};
+
 /// Maximum number of evenly spaced steps of one scene: a guard against slips of the pen.
 pub(super) const MAX_STEPS: usize = 100_000;
 
@@ -45,4 +47,16 @@ pub enum InvalidScene {
     /// A step that is not a number.
     #[error("step {0} is {1}, expected a finite proper time")]
     Step(usize, f64),
+    /// An acceleration in g in a scene that does not say what its units are.
+    #[error(
+        "flight[{0}] has \"acceleration_g\", which needs \"units\" like {{ \"length_m\": 299792458 }}; or expected \
+         \"acceleration\""
+    )]
+    NoUnits(usize),
+    /// An acceleration that is beyond `f64` in units of the scene.
+    #[error("flight[{0}]: {1}")]
+    Segment(usize, SegmentError),
+    /// A flight that is not possible.
+    #[error("the observer's flight: {0}")]
+    Flight(#[from] FlightError),
 }

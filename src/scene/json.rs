@@ -3,6 +3,7 @@
 use schemars::Schema;
 use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 use thiserror::Error;
 
@@ -48,17 +49,7 @@ impl Scene {
     /// assert_eq!((error.line, error.at.as_str()), (1, "objects[0].shpe"));
     /// ```
     pub fn from_json(text: &str) -> Result<Self, SceneError> {
-        // Some editors mark text as UTF-8 with one character before it.
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let mut deserializer = serde_json::Deserializer::from_str(text);
-        let scene = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
-            let at = error.path().to_string();
-            scene_error(text, &error.into_inner(), &at)
-        })?;
-        deserializer
-            .end()
-            .map_err(|error| scene_error(text, &error, "."))?;
-        Ok(scene)
+        read(text, "scene")
     }
 
     /// The JSON Schema of the scene file.
@@ -67,6 +58,31 @@ impl Scene {
             .with_transform(RecursiveTransform(for_scene_authors))
             .into_generator()
             .into_root_schema_for::<Self>()
+    }
+}
+
+/// Reads a value from JSON text; `kind` is what the text is called in messages.
+pub(super) fn read<T: DeserializeOwned>(text: &str, kind: &str) -> Result<T, SceneError> {
+    // Some editors mark text as UTF-8 with one character before it.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    let value = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+        let at = error.path().to_string();
+        scene_error(text, &error.into_inner(), &at, kind)
+    })?;
+    let end = deserializer.end();
+    end.map_err(|error| scene_error(text, &error, ".", kind))?;
+    Ok(value)
+}
+
+/// The error of a text that is wrong as a whole, found when all of it has been read.
+pub(super) fn at_end(text: &str, message: String) -> SceneError {
+    let read = text.trim_end();
+    SceneError {
+        line: read.lines().count().max(1),
+        column: read.lines().last().map_or(0, str::len).max(1),
+        at: String::new(),
+        message,
     }
 }
 
@@ -90,10 +106,7 @@ const IN_WORDS_OF_SCENES: &[(&str, &str)] = &[
         "expected true, false, null, a number, a string, a list or an object",
     ),
     ("expected value", "expected a value"),
-    (
-        "trailing characters",
-        "more text after the end of the scene",
-    ),
+    ("trailing characters", "more text after the end of the KIND"),
     ("invalid type: sequence", "found a list"),
     ("invalid type: map", "found an object"),
     ("invalid value: map", "found an empty object"),
@@ -117,36 +130,35 @@ const IN_WORDS_OF_SCENES: &[(&str, &str)] = &[
     ("duplicate field", "repeated key"),
 ];
 
-fn in_words_of_scenes(message: &str) -> String {
+fn in_words_of_scenes(message: &str, kind: &str) -> String {
     let mut message = message.to_owned();
     for (theirs, ours) in IN_WORDS_OF_SCENES {
         if let Some(start) = message.find(theirs) {
             // What a user wrote comes in quotes or backticks, behind the words that are replaced.
-            message.replace_range(start..start + theirs.len(), ours);
+            message.replace_range(start..start + theirs.len(), &ours.replace("KIND", kind));
         }
     }
     message
 }
 
-fn scene_error(json: &str, error: &serde_json::Error, at: &str) -> SceneError {
-    let (mut line, mut column) = (error.line(), error.column());
+fn scene_error(json: &str, error: &serde_json::Error, at: &str, kind: &str) -> SceneError {
+    let (line, column) = (error.line(), error.column());
     // serde_json has no message without its position; here the position has fields of its own.
     let text = error.to_string();
     let suffix = format!(" at line {line} column {column}");
-    if line == 0 {
-        // What is wrong with the scene as a whole is found when all of it has been read.
-        let read = json.trim_end();
-        line = read.lines().count();
-        column = read.lines().last().map_or(0, str::len);
-    }
-    // An empty text, or one that ends with a line, has no column there.
-    (line, column) = (line.max(1), column.max(1));
+    let message = in_words_of_scenes(text.strip_suffix(&suffix).unwrap_or(&text), kind);
+    let whole = at_end(json, message);
     SceneError {
-        line,
-        column,
         // "." is the whole scene, "?" a place inside a value that was never begun.
         at: at.trim_end_matches(['.', '?']).to_owned(),
-        message: in_words_of_scenes(text.strip_suffix(&suffix).unwrap_or(&text)),
+        // An empty text, or one that ends with a line, has no column there.
+        line: if line == 0 { whole.line } else { line },
+        column: if line == 0 {
+            whole.column
+        } else {
+            column.max(1)
+        },
+        ..whole
     }
 }
 

@@ -5,20 +5,24 @@
 mod attributes;
 mod built_in;
 mod error;
+mod flight;
 mod forms;
 mod json;
 mod marker;
 mod object;
 mod observer;
+mod orientation;
 mod place;
 mod scale;
 mod scene;
 mod steps;
 mod tolerance;
+mod units;
 
 pub use attributes::{Attribute, Attributes, UnknownAttribute};
 pub use built_in::{BUILT_IN_SCENES, BuiltInScene};
 pub use error::InvalidScene;
+pub use flight::FlightPlan;
 pub use json::SceneError;
 pub use marker::{MarkerRadius, MarkerRadiusError};
 pub use object::{Object, Source};
@@ -28,5 +32,6 @@ pub use scale::Scale;
 pub use scene::Scene;
 pub use steps::even_steps;
 pub use tolerance::{Tolerance, ToleranceError, Unit};
+pub use units::Units;
 
 pub use crate::spacetime::{Rotation, RotationError};

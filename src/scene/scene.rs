@@ -6,8 +6,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::forms::{self, FromObject, Keyed, Steps};
-use super::{Attributes, InvalidScene, Object, Observer, Tolerance};
-use crate::spacetime::Moment;
+use super::observer::ObserverFields;
+use super::{Attributes, InvalidScene, Object, Observer, Tolerance, Units};
+use crate::spacetime::{Flight, Moment};
 
 /// A scene: an observer, objects, and the steps at which the observer looks.
 ///
@@ -17,7 +18,9 @@ use crate::spacetime::Moment;
 #[schemars(with = "SceneFields")]
 pub struct Scene {
     title: Option<String>,
+    units: Option<Units>,
     observer: Observer,
+    flight: Flight,
     objects: Vec<Object>,
     steps: Vec<f64>,
     tolerance: Tolerance,
@@ -29,7 +32,7 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// No objects, or two of one name.
+    /// No objects, two of one name, or an observer whose flight is not possible.
     pub fn new(observer: Observer, objects: Vec<Object>) -> Result<Self, InvalidScene> {
         if objects.is_empty() {
             return Err(InvalidScene::NoObjects);
@@ -45,6 +48,8 @@ impl Scene {
         }
         Ok(Self {
             title: None,
+            units: None,
+            flight: observer.to_flight()?,
             observer,
             objects,
             steps: vec![0.0],
@@ -70,10 +75,14 @@ impl Scene {
     }
 
     /// The same scene seen by another observer.
-    #[must_use]
-    pub fn with_observer(mut self, observer: Observer) -> Self {
+    ///
+    /// # Errors
+    ///
+    /// The observer's flight is not possible: see [`Flight::new`].
+    pub fn with_observer(mut self, observer: Observer) -> Result<Self, InvalidScene> {
+        self.flight = observer.to_flight()?;
         self.observer = observer;
-        self
+        Ok(self)
     }
 
     /// The scene with another tolerance, for all objects that have none of their own.
@@ -120,6 +129,16 @@ impl Scene {
         &self.observer
     }
 
+    /// What the observer is at any proper time.
+    pub fn flight(&self) -> &Flight {
+        &self.flight
+    }
+
+    /// The scene's units in everyday units, if the scene says what they are.
+    pub fn units(&self) -> Option<Units> {
+        self.units
+    }
+
     /// What there is to see; at least one, with names of their own.
     pub fn objects(&self) -> &[Object] {
         &self.objects
@@ -133,7 +152,7 @@ impl Scene {
     /// Event, velocity and axes of the observer at one step, counted from 0; `None` where the scene has no such step.
     pub fn moment(&self, step: usize) -> Option<Moment> {
         let proper_time = self.steps.get(step)?;
-        Some(self.observer.moment(*proper_time))
+        Some(self.flight.moment(*proper_time))
     }
 }
 
@@ -144,10 +163,14 @@ impl Scene {
 struct SceneFields {
     /// What the scene shows, for people.
     title: Option<String>,
+    /// The scene's units in everyday units; only accelerations in g need them.
+    #[serde(default)]
+    #[schemars(with = "Option<Units>")]
+    units: Option<FromObject<Units>>,
     /// The observer; at rest at the origin at time 0 if absent.
     #[serde(default, deserialize_with = "forms::from_object")]
-    #[schemars(with = "Observer")]
-    observer: Observer,
+    #[schemars(with = "ObserverFields")]
+    observer: ObserverFields,
     /// The objects.
     #[schemars(length(min = 1))]
     objects: Vec<Object>,
@@ -167,9 +190,12 @@ impl TryFrom<FromObject<SceneFields>> for Scene {
     type Error = InvalidScene;
 
     fn try_from(FromObject(fields): FromObject<SceneFields>) -> Result<Self, InvalidScene> {
-        let scene = Self::new(fields.observer, fields.objects)?.with_steps(fields.steps.0)?;
+        let units = fields.units.map(|FromObject(units)| units);
+        let observer = fields.observer.observer(units)?;
+        let scene = Self::new(observer, fields.objects)?.with_steps(fields.steps.0)?;
         Ok(Self {
             title: fields.title,
+            units,
             tolerance: fields.tolerance,
             attributes: fields.attributes,
             ..scene

@@ -1,10 +1,11 @@
-//! Special relativity without objects or light: velocities, events, frames, worldlines, moments.
+//! Special relativity without objects or light: velocities, events, frames, worldlines, moments, flights.
 //!
 //! Conventions: c = 1; the Minkowski interval is `-t^2 + x^2 + y^2 + z^2`; transformations are
 //! passive, they turn the coordinates of one frame into those of another.
 
 mod event;
 pub(crate) mod exact;
+mod flight;
 mod lorentz;
 mod moment;
 mod rotation;
@@ -13,9 +14,12 @@ mod velocity;
 mod world_line;
 
 pub use event::Event;
+pub use flight::{
+    Flight, FlightError, Integrator, IntegratorError, Segment, SegmentError, Steering, Step,
+};
 pub use lorentz::Lorentz;
 pub use moment::Moment;
-pub use rotation::{Rotation, RotationError};
+pub use rotation::{LookingError, Rotation, RotationError};
 pub(crate) use vector::{harmless_scale, heading, length, unit};
 pub use velocity::{MAX_RAPIDITY, Velocity, VelocityError};
 pub use world_line::WorldLine;

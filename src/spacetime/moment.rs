@@ -1,5 +1,7 @@
 //! What an observer is at one instant.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::{Event, Lorentz, Rotation, Velocity, WorldLine};
@@ -32,17 +34,23 @@ use super::{Event, Lorentz, Rotation, Velocity, WorldLine};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
     origin: Event,
-    legs: Vec<Leg>,
+    way: Vec<Way>,
     scene_to_observer: Lorentz,
 }
 
 /// A part of an observer's way.
+#[derive(Clone, Debug, PartialEq)]
+enum Way {
+    Leg(Leg),
+    /// So many legs, the first ones of a flight.
+    Legs(Arc<[Leg]>, usize),
+}
+
+/// A displacement, given in a frame in which it is not much longer than need be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Leg {
-    /// To the observer's frame at the beginning of the leg.
-    scene_to_start: Lorentz,
-    /// From the beginning to the end, in that frame.
-    displacement_start: Event,
+pub(super) struct Leg {
+    scene_to_frame: Lorentz,
+    displacement_frame: Event,
 }
 
 impl Moment {
@@ -50,7 +58,7 @@ impl Moment {
     pub fn new(event: Event, scene_to_observer: Lorentz) -> Self {
         Self {
             origin: event,
-            legs: vec![],
+            way: vec![],
             scene_to_observer,
         }
     }
@@ -58,25 +66,44 @@ impl Moment {
     /// The observer after `proper_time` of coasting, axes unturned.
     #[must_use]
     pub fn coasted(&self, proper_time: f64) -> Self {
-        let mut later = self.clone();
-        later.legs.push(Leg {
-            scene_to_start: self.scene_to_observer,
-            displacement_start: Event::new(proper_time, DVec3::ZERO),
-        });
-        later
+        let rest = Event::new(proper_time, DVec3::ZERO);
+        let leg = Leg::new(self.scene_to_observer, rest);
+        self.with_legs([leg], self.scene_to_observer)
     }
 
     /// The observer after a flight that leads to `displacement_own` and into the frame behind `own_to_next`, both in the
     /// observer's frame at this moment.
     #[must_use]
     pub fn flown(&self, displacement_own: Event, own_to_next: &Lorentz) -> Self {
+        let leg = Leg::new(self.scene_to_observer, displacement_own);
+        let scene_to_next = self.scene_to_observer.then(own_to_next);
+        self.with_legs([leg], scene_to_next)
+    }
+
+    /// The observer after these legs, in the frame of `scene_to_observer`.
+    fn with_legs(&self, legs: impl IntoIterator<Item = Leg>, scene_to_observer: Lorentz) -> Self {
+        let mut way = self.way.clone();
+        way.extend(legs.into_iter().map(Way::Leg));
+        Self {
+            origin: self.origin,
+            way,
+            scene_to_observer,
+        }
+    }
+
+    /// The observer after the first `count` legs of a flight and some more, in the frame of `scene_to_observer`.
+    pub(super) fn along(
+        &self,
+        flight: &Arc<[Leg]>,
+        count: usize,
+        legs: impl IntoIterator<Item = Leg>,
+        scene_to_observer: Lorentz,
+    ) -> Self {
         let mut later = self.clone();
-        later.legs.push(Leg {
-            scene_to_start: self.scene_to_observer,
-            displacement_start: displacement_own,
-        });
-        later.scene_to_observer = self.scene_to_observer.then(own_to_next);
-        later
+        if count > 0 {
+            later.way.push(Way::Legs(flight.clone(), count));
+        }
+        later.with_legs(legs, scene_to_observer)
     }
 
     /// The observer with other axes: those of now, turned by `rotation`, which is given in them.
@@ -107,6 +134,13 @@ impl Moment {
         self.scene_to_observer.boost_velocity()
     }
 
+    /// The observer's own axes x, y, z, as differences of events in the scene frame: each of length 1, and at the same time
+    /// in the observer's frame.
+    pub fn axes(&self) -> [Event; 3] {
+        let back = self.scene_to_observer.inverse();
+        DVec3::AXES.map(|axis| back.apply(Event::new(0.0, axis)))
+    }
+
     /// From the scene frame to the observer's: the velocity, and how the axes are turned after that boost.
     pub fn scene_to_observer(&self) -> Lorentz {
         self.scene_to_observer
@@ -120,27 +154,61 @@ impl Moment {
 
     /// The displacement from [`Moment::origin`], leg by leg, in the rest frame of something that moves with `velocity`.
     pub(crate) fn displacements_in(&self, velocity: Velocity) -> impl Iterator<Item = Event> {
-        self.legs.iter().map(move |leg| leg.in_rest_frame(velocity))
+        let legs = self.way.iter().flat_map(|part| match part {
+            Way::Leg(leg) => std::slice::from_ref(leg),
+            Way::Legs(legs, count) => &legs[..*count],
+        });
+        legs.map(move |leg| leg.in_rest_frame(velocity))
     }
 }
 
 impl Leg {
+    pub(super) fn new(scene_to_frame: Lorentz, displacement_frame: Event) -> Self {
+        Self {
+            scene_to_frame,
+            displacement_frame,
+        }
+    }
+
+    /// Whether the leg leads nowhere.
+    pub(super) fn is_empty(&self) -> bool {
+        self.displacement_frame == Event::default()
+    }
+
+    /// This leg and `next` as one, in this leg's frame; `None` if the rapidity between their frames is above
+    /// `max_rapidity`.
+    pub(super) fn with(&self, next: &Self, max_rapidity: f64) -> Option<Self> {
+        let next_to_this = next.scene_to_frame.inverse().then(&self.scene_to_frame);
+        let near = next_to_this.boost_velocity().rapidity() <= max_rapidity;
+        near.then(|| Self {
+            displacement_frame: self.displacement_frame
+                + next_to_this.apply(next.displacement_frame),
+            ..*self
+        })
+    }
+
+    /// This leg and `next` as one, in the scene frame.
+    pub(super) fn with_in_scene(&self, next: &Self) -> Self {
+        let [this, next] = [self, next].map(|leg| leg.in_rest_frame(Velocity::ZERO));
+        Self::new(Lorentz::IDENTITY, this + next)
+    }
+
     /// The displacement in the rest frame of something that moves with `velocity`.
     fn in_rest_frame(&self, velocity: Velocity) -> Event {
-        let rest_to_start = Lorentz::boost(velocity.reversed()).then(&self.scene_to_start);
-        let start = rest_to_start.boost_velocity();
-        let Event { time, position } = self.displacement_start;
+        let rest_to_frame = Lorentz::boost(velocity.reversed()).then(&self.scene_to_frame);
+        let frame = rest_to_frame.boost_velocity();
+        let Event { time, position } = self.displacement_frame;
         if position == DVec3::ZERO {
             // A clock alone: as many digits at any speed, also at one that adds next to nothing to 1.
             let line = WorldLine {
                 origin: Event::default(),
-                velocity: start,
+                velocity: frame,
             };
             return line.four_velocity() * time;
         }
         // The turn is undone first: so the boost back is along the velocity as it was given.
-        let boosted = Event::new(time, rest_to_start.rotation().inverse() * position);
-        Lorentz::boost(start.reversed()).apply(boosted)
+        let boosted = Event::new(time, rest_to_frame.rotation().inverse() * position);
+        Lorentz::boost(frame.reversed()).apply(boosted)
     }
 }
 

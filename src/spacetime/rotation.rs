@@ -1,8 +1,10 @@
 //! How things and axes are turned.
 
-use glam::DQuat;
+use glam::{DMat3, DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
+
+use super::{exact, unit};
 
 /// Lengths that differ from 1 by more are no rounding.
 const ROUNDING: f64 = 1e-3;
@@ -18,6 +20,16 @@ pub struct Rotation(DQuat);
 pub struct RotationError {
     components: [f64; 4],
     length: f64,
+}
+
+/// Why two directions do not make a [`Rotation`].
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error(
+    "look is {look} and up is {up}, expected two finite directions that are not along one line"
+)]
+pub struct LookingError {
+    look: DVec3,
+    up: DVec3,
 }
 
 impl Rotation {
@@ -39,6 +51,26 @@ impl Rotation {
                 length,
             })
         }
+    }
+
+    /// The rotation of a quaternion of any length but zero.
+    pub(super) fn of_any_length(quaternion: DQuat) -> Self {
+        Self(quaternion.normalize())
+    }
+
+    /// The rotation of an observer who looks in the direction `look`, with `up` above: its own -z axis is along `look`, its
+    /// own y axis in the plane of both.
+    ///
+    /// # Errors
+    ///
+    /// A direction that is zero or not finite, or two along one line.
+    pub fn looking(look: DVec3, up: DVec3) -> Result<Self, LookingError> {
+        let (Some(ahead), Some(above)) = (unit(look), unit(up)) else {
+            return Err(LookingError { look, up });
+        };
+        let right = unit(exact::cross(ahead, above)).ok_or(LookingError { look, up })?;
+        let axes = DMat3::from_cols(right, right.cross(ahead), -ahead);
+        Ok(Self::of_any_length(DQuat::from_mat3(&axes)))
     }
 
     /// The unit quaternion.

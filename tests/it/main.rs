@@ -25,6 +25,11 @@ mod physics {
     mod properties;
 }
 
+mod flights {
+    mod exact;
+    mod known_answers;
+}
+
 mod tessellation {
     mod certificates;
     mod covering;

@@ -628,7 +628,7 @@ fn composed_velocities_never_leave_the_range_of_numbers() {
             velocity: whole.boost_velocity(),
             ..Observer::default()
         };
-        let scene = ball().with_observer(observer);
+        let scene = ball().with_observer(observer).unwrap();
         let (models, _) = load_models(&scene, "".as_ref()).unwrap();
         let refused = PlacedScene::new(scene, models).unwrap_err().to_string();
         assert!(
@@ -807,7 +807,7 @@ fn pictures_take_any_numbers() {
                     .is_none_or(DVec2::is_finite)
             );
             let moments = [
-                ball().observer().moment(x),
+                ball().flight().moment(x),
                 ball().moment(0).unwrap().coasted(x),
             ];
             let eyes = [

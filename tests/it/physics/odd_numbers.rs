@@ -262,6 +262,7 @@ impl Numbers {
             position: Place::new(self.observer)?,
             velocity: observer.velocity()?,
             marker: Some(MarkerRadius::new(self.marker)?),
+            ..Observer::default()
         };
         let scene = Scene::new(observer, vec![object])?
             .with_steps(vec![self.step])?

@@ -119,9 +119,9 @@ fn flat_built_in_scenes_are_covered_at_any_rapidity() {
             let observer = Observer {
                 velocity: Velocity::from_rapidity(rapidity, DVec3::NEG_X).unwrap(),
                 marker: None,
-                ..*scene.observer()
+                ..scene.observer().clone()
             };
-            let scene = scene.clone().with_observer(observer);
+            let scene = scene.clone().with_observer(observer).unwrap();
             let scene = scene.with_steps(vec![-5.0, 0.0, 5.0]).unwrap();
             added += assert_covering(placed(scene), &format!("{name} at rapidity {rapidity}"));
         }

@@ -1,0 +1,1 @@
+//! Flights by closed forms against an integration with 256 bits.
