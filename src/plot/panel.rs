@@ -2,16 +2,11 @@
 
 use std::ops::Range;
 
-use plotters::coord::Shift;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// What vector pictures are drawn with is up to the viewer; this is what it is asked for.
-pub(crate) const FAMILY: &str = "sans-serif";
-
-/// Of what is not the matter itself.
-pub(crate) const GREY: RGBColor = RGBColor(0x77, 0x77, 0x77);
+use super::{Area, Drawn, FAMILY, GREY};
 
 /// A line with a name.
 pub(crate) struct Curve {
@@ -72,9 +67,9 @@ impl Panel {
     /// What stands for what, line by line, none wider than the area.
     pub(crate) fn legend<B: DrawingBackend>(
         &self,
-        area: &DrawingArea<B, Shift>,
+        area: &Area<B>,
         scale: f64,
-    ) -> Result<Vec<Vec<LegendItem<'_>>>, DrawingAreaErrorKind<B::ErrorType>> {
+    ) -> Drawn<B, Vec<Vec<LegendItem<'_>>>> {
         let px = |pixels: f64| (pixels * scale).round() as i32;
         let style = (FAMILY, LETTERS * scale).into_text_style(area);
         let room = area.dim_in_pixel().0 as i32 - px(ASIDE + 2.0 * MARGIN);
@@ -97,10 +92,10 @@ impl Panel {
     /// The legend is in a strip of so many lines above the axes, where it covers no curve.
     pub(crate) fn draw<B: DrawingBackend>(
         &self,
-        area: &DrawingArea<B, Shift>,
+        area: &Area<B>,
         legend_lines: usize,
         scale: f64,
-    ) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+    ) -> Drawn<B> {
         let px = |pixels: f64| (pixels * scale).round() as i32;
         let (strip, area) = area.split_vertically(px(MARGIN + LINE * legend_lines as f64));
         self.draw_legend(&strip, scale)?;
@@ -160,11 +155,7 @@ impl Panel {
         Ok(())
     }
 
-    fn draw_legend<B: DrawingBackend>(
-        &self,
-        strip: &DrawingArea<B, Shift>,
-        scale: f64,
-    ) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+    fn draw_legend<B: DrawingBackend>(&self, strip: &Area<B>, scale: f64) -> Drawn<B> {
         let px = |pixels: f64| (pixels * scale).round() as i32;
         let style = (FAMILY, LETTERS * scale).into_text_style(strip);
         let style = style.pos(Pos::new(HPos::Left, VPos::Center));

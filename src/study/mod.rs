@@ -16,11 +16,11 @@ mod settings;
 mod true_surface;
 mod uniform;
 
+#[cfg(feature = "plot")]
+pub use crate::plot::{PlotError, PlotSize};
 pub use cost_study::CostStudy;
 pub use error::StudyError;
 pub use mesh_cost::{Made, MeshCost, Seconds};
-#[cfg(feature = "plot")]
-pub use plot::{PlotError, PlotSize};
 pub use ray_cost::{Pictures, RayCost, RaySettings};
 pub use settings::CostSettings;
 pub use uniform::{UniformCost, UniformRun};
