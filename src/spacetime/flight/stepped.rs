@@ -125,7 +125,7 @@ impl Stepped {
             kept(count, &state);
         }
         let rest = proper_time - full * self.step;
-        match rest > 1e-9 * self.step {
+        match full == 0.0 || rest > 1e-9 * self.step {
             true => self.stepped(state, segment, rest),
             false => state,
         }
