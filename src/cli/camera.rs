@@ -30,7 +30,8 @@ pub(super) struct CameraArgs {
     /// Show the whole sky as a longitude-latitude map
     #[arg(long, conflicts_with = "fov")]
     full_sky: bool,
-    /// Direction in which the camera looks, of any length [default: towards the middle of the objects]
+    /// Direction in which the camera looks, of any length [default: towards the middle of the objects; for an observer
+    /// who flies, or whose axes are turned, its own -z]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, conflicts_with = "target")]
     look: Option<DVec3>,
     /// Place at which the camera looks, in scene units
@@ -144,7 +145,7 @@ impl CameraArgs {
         match self.fov {
             _ if self.full_sky => FieldOfView::FullSky,
             Some(degrees) => FieldOfView::Degrees(degrees),
-            None if is_mesh && self.aim() == Aim::Middle => FieldOfView::Fitting,
+            None if is_mesh && self.aim() == Aim::Usual => FieldOfView::Fitting,
             None => default,
         }
     }
@@ -153,7 +154,7 @@ impl CameraArgs {
         match (self.look, self.target) {
             (Some(look), _) => Aim::Look(look),
             (_, Some(target)) => Aim::Target(target),
-            _ => Aim::Middle,
+            _ => Aim::Usual,
         }
     }
 

@@ -104,7 +104,8 @@ struct PictureArgs {
     /// --look wide enough for all of it]
     #[arg(long, value_name = "DEG", value_parser = number, allow_hyphen_values = true)]
     fov: Option<f64>,
-    /// Direction in which the observer looks, of any length [default: at each step towards the middle of the objects]
+    /// Direction in which the observer looks, of any length [default: at each step towards the middle of the objects;
+    /// for an observer who flies, or whose axes are turned, its own -z]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     look: Option<DVec3>,
 }
@@ -275,7 +276,7 @@ impl PictureArgs {
                 None if input.is_mesh && self.look.is_none() => FieldOfView::Fitting,
                 None => FieldOfView::Degrees(OBSERVER_FOV_DEG),
             },
-            aim: self.look.map_or(Aim::Middle, Aim::Look),
+            aim: self.look.map_or(Aim::Usual, Aim::Look),
         };
         let cameras = camera.observer_cameras(&placed);
         let cameras = cameras.map_err(|error| match error {

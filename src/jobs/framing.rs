@@ -6,6 +6,7 @@ use thiserror::Error;
 use super::extent::{angle_around, bounds, middle_of_sky, reach, scaled};
 use crate::pipeline::{PlacedScene, PlacedSceneError, SurfaceOptions};
 use crate::render::{Camera, CameraError, PictureSize, Projection};
+use crate::scene::Scene;
 use crate::spacetime::length;
 
 /// Customary vertical field of view of the observer's pictures, in degrees.
@@ -43,9 +44,11 @@ pub enum FieldOfView {
 /// Where a camera looks, in the observer's frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Aim {
+    /// An observer who flies, or whose axes are turned, looks along its own -z axis; all others as with [`Aim::Middle`].
+    #[default]
+    Usual,
     /// The middle of all objects. The observer looks at the middle of the part of the sky that they cover, at each step
     /// anew.
-    #[default]
     Middle,
     /// A direction, as a vector of any length.
     Look(DVec3),
@@ -116,9 +119,32 @@ impl CameraSettings {
     /// An error is returned if the field of view is out of range or the aim gives no direction.
     pub fn observer_cameras(&self, placed: &PlacedScene) -> Result<Vec<Camera>, FramingError> {
         let steps = 0..placed.scene().steps().len();
-        let fov = self.observer_fov_deg(steps.clone().map(|step| seen_vertices(placed, step)))?;
-        let camera = |step| self.observer_camera(fov, &seen_vertices(placed, step)?);
+        let here = self.for_observer(placed.scene());
+        let fov = here.observer_fov_deg(steps.clone().map(|step| seen_vertices(placed, step)))?;
+        let camera = |step| here.observer_camera(fov, &seen_vertices(placed, step)?);
         steps.map(camera).collect()
+    }
+
+    /// The settings of the observer's camera in a scene, whose aim is not [`Aim::Usual`].
+    pub(super) fn for_observer(&self, scene: &Scene) -> Self {
+        if self.aim != Aim::Usual {
+            return *self;
+        }
+        match scene.observer().has_own_axes() {
+            false => Self {
+                aim: Aim::Middle,
+                ..*self
+            },
+            true => Self {
+                aim: Aim::Look(DVec3::NEG_Z),
+                field_of_view: match self.field_of_view {
+                    // What is behind a pilot is not in the picture.
+                    FieldOfView::Fitting => FieldOfView::Degrees(OBSERVER_FOV_DEG),
+                    other => other,
+                },
+                ..*self
+            },
+        }
     }
 
     /// Vertical field of view of the observer's camera at all steps, in degrees, from the seen positions at each step.
@@ -143,7 +169,7 @@ impl CameraSettings {
         places: &[DVec3],
     ) -> Result<Camera, FramingError> {
         let look = match self.aim {
-            Aim::Middle => middle_of_sky(places),
+            Aim::Usual | Aim::Middle => middle_of_sky(places),
             Aim::Look(look) => look,
             Aim::Target(target) => target,
         };
@@ -227,7 +253,9 @@ impl CameraSettings {
         };
         Camera::new(self.size, projection, look).map_err(|error| match (error, self.aim, from) {
             (CameraError::Look(_), Aim::Target(target), _) => FramingError::TargetIsCamera(target),
-            (CameraError::Look(_), Aim::Middle, Some(from)) => FramingError::CameraInMiddle(from),
+            (CameraError::Look(_), Aim::Usual | Aim::Middle, Some(from)) => {
+                FramingError::CameraInMiddle(from)
+            }
             _ => error.into(),
         })
     }

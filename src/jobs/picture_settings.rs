@@ -96,7 +96,7 @@ impl PictureSettings {
             camera: CameraSettings {
                 size: PictureSize::new(width, height).expect("both sides are within the limits"),
                 field_of_view,
-                aim: Aim::Middle,
+                aim: Aim::Usual,
             },
             samples: NonZeroU32::new(options.samples).unwrap_or(NonZeroU32::MIN),
             background: options.background,

@@ -59,7 +59,8 @@ impl<'a> Views<'a> {
     /// Vertical field of view of the observer's camera, in degrees, the same at all steps.
     pub(super) fn observer_fov_deg(&self) -> Result<f64, RenderError> {
         let places = self.steps().map(|step| self.seen_vertices(step));
-        self.settings.camera.observer_fov_deg(places)
+        let camera = self.settings.camera.for_observer(self.placed.scene());
+        camera.observer_fov_deg(places)
     }
 
     /// A camera outside that has everything at every step in the picture, or stands at the position `from`.
@@ -91,8 +92,9 @@ impl<'a> Views<'a> {
     /// The observer's view at one step, with a vertical field of view in degrees.
     pub(super) fn observer(&mut self, step: usize, fov_deg: f64) -> Result<Picture, RenderError> {
         let places = self.seen_vertices(step)?;
-        let camera = self.settings.camera.observer_camera(fov_deg, &places)?;
         let (scene, steps) = (self.placed.scene(), self.steps().end);
+        let camera = self.settings.camera.for_observer(scene);
+        let camera = camera.observer_camera(fov_deg, &places)?;
         let moment = scene.moment(step);
         let moment = moment.ok_or(PlacedSceneError::Step { step, steps })?;
         let viewpoint = Viewpoint::Observer(&moment);

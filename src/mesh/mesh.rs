@@ -163,6 +163,11 @@ impl Mesh {
         &self.texture_coordinates
     }
 
+    /// The positions of the corners of one triangle.
+    pub(crate) fn corners_of(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|corner| self.positions[corner as usize])
+    }
+
     /// The triangles as all meshes share them that differ in geometry alone.
     pub(crate) fn shared_triangles(&self) -> &Arc<Vec<[u32; 3]>> {
         &self.triangles

@@ -15,7 +15,8 @@ use crate::mesh::Mesh;
 use crate::scene::{Tolerance, Unit};
 use crate::spacetime::length;
 use crate::tessellate::{
-    Allowance, Precision, Singles, largest_gap, local_stretch, nearest_point, rounding_bound,
+    Allowance, Precision, Singles, largest_gap, largest_stretch, local_stretch, nearest_point,
+    rounding_bound,
 };
 
 /// The fraction of a curved shape's tolerance that its facets may take by their distance from the curved surface; the
@@ -122,11 +123,9 @@ impl StepTolerance {
         let mut curvature = 0.0;
         if self.deviation > 0.0 {
             let mesh = parts[0].1.mesh();
-            let stretches = mesh.triangles().par_iter().map(|corners| {
-                let positions = corners.map(|corner| mesh.positions()[corner as usize]);
-                local_stretch(&self.view, shrunk(positions, each))
-            });
-            curvature = self.deviation * stretches.reduce(|| 0.0, f64::max);
+            let facet = |index| shrunk(mesh.corners_of(index), each);
+            let count = mesh.triangles().len();
+            curvature = self.deviation * largest_stretch(&self.view, count, facet);
         }
         let rounding = self.rounding_of_all(parts, seen);
         let left = self.aimed_length - curvature - rounding;
@@ -203,38 +202,29 @@ impl StepTolerance {
     pub(super) fn max_deviation(&self, mesh: &Mesh, seen: &[MappedMesh]) -> f64 {
         let rounding = self.rounding(mesh, &seen[0].extremes, self.box_around(seen), 0.0);
         let left = (self.aimed_length - rounding).max(0.5 * self.aimed_length);
-        let offsets_of = |corners: &[u32; 3]| {
-            corners.map(|corner| mesh.positions()[corner as usize] - self.view.observer_rest())
-        };
-        let touched = || {
-            let mut facets = mesh.triangles().iter().map(offsets_of);
-            facets.any(|offsets| self.nearest(offsets) == DVec3::ZERO)
-        };
-        let min_length = match (self.aimed.unit(), self.aimed.number()) {
+        let count = mesh.triangles().len();
+        let max_deviation = match (self.aimed.unit(), self.aimed.number()) {
             (Unit::Degrees, degrees) => {
-                let share = if touched() {
-                    MIN_DISTANCE
-                } else {
-                    MIN_DISTANCE_UNTOUCHED
+                let nearest = |index| {
+                    let corners = mesh.corners_of(index);
+                    self.nearest(corners.map(|corner| corner - self.view.observer_rest()))
                 };
-                share * diagonal(seen) * degrees.to_radians().sin()
-            }
-            _ => 0.0,
-        };
-        let allowed = |corners: &[u32; 3]| {
-            let positions = corners.map(|corner| mesh.positions()[corner as usize]);
-            let here = match (self.aimed.unit(), self.aimed.number()) {
-                (Unit::Degrees, degrees) => {
-                    let nearest = self.view.seen_distance(self.nearest(offsets_of(corners)));
+                let share = match (0..count).any(|index| nearest(index) == DVec3::ZERO) {
+                    true => MIN_DISTANCE,
+                    false => MIN_DISTANCE_UNTOUCHED,
+                };
+                let min_length = share * diagonal(seen) * degrees.to_radians().sin();
+                let allowed = (0..count).into_par_iter().map(|index| {
+                    let nearest = self.view.seen_distance(nearest(index));
                     // The facets that this leads to are other ones: a little room for their distances.
-                    (0.9 * degrees.to_radians().sin() * nearest).max(min_length)
-                }
-                _ => left,
-            };
-            here / local_stretch(&self.view, positions)
+                    let here = (0.9 * degrees.to_radians().sin() * nearest).max(min_length);
+                    here / local_stretch(&self.view, mesh.corners_of(index))
+                });
+                allowed.reduce(|| f64::INFINITY, f64::min)
+            }
+            _ => left / largest_stretch(&self.view, count, |index| mesh.corners_of(index)),
         };
-        let all = mesh.triangles().par_iter().map(allowed);
-        CURVATURE_SHARE * all.reduce(|| f64::INFINITY, f64::min)
+        CURVATURE_SHARE * max_deviation
     }
 
     /// The place of a facet nearest to the observer, or a place nearer than any of the curved surface that the facet

@@ -31,6 +31,11 @@ pub struct Observer {
 }
 
 impl Observer {
+    /// Whether the observer's own axes are other than those of the scene under a pure boost, at the observation or later.
+    pub fn has_own_axes(&self) -> bool {
+        !self.flight.is_empty() || self.orientation != Rotation::IDENTITY
+    }
+
     /// What the observer is at the observation.
     pub fn start(&self) -> Moment {
         let event = Event::new(self.time.get(), self.position.get());

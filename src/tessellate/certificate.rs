@@ -4,6 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
+use super::stretch::local_stretch;
 use super::triangle_gap;
 use crate::light_cone::{Extremes, View};
 use crate::mesh::Mesh;
@@ -89,18 +90,6 @@ pub(crate) struct Singles {
     pub(crate) extent: DVec3,
     /// How many times each position is rounded.
     pub(crate) roundings: f64,
-}
-
-/// An upper bound on how many times the photosurface map stretches lengths near a triangle at rest. The bound holds in
-/// a ball around the triangle's centroid that reaches twice as far as the corners, and so contains a curved surface
-/// through the corners.
-pub(crate) fn local_stretch(view: &View, [a, b, c]: [DVec3; 3]) -> f64 {
-    let middle = (a + b + c) / 3.0;
-    let reach = [a, b, c]
-        .map(|corner| corner.distance(middle))
-        .into_iter()
-        .fold(0.0, f64::max);
-    view.stretch_bound(middle, 2.0 * reach)
 }
 
 /// The bounds that a certificate adds up: lengths in the observer's frame, unless stated otherwise.

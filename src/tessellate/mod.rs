@@ -25,11 +25,12 @@ mod queue;
 mod refine;
 mod room;
 mod sky;
+mod stretch;
 mod strip;
 mod survey;
 
 pub(crate) use allowance::Allowance;
-pub(crate) use certificate::{Bounds, Counts, Singles, local_stretch, rounding_bound};
+pub(crate) use certificate::{Bounds, Counts, Singles, rounding_bound};
 pub use certificate::{Certificate, Precision};
 pub use gap::{edge_gap, triangle_gap, triangle_gap_place};
 use minimum::minimum_triangles;
@@ -38,3 +39,5 @@ pub(crate) use nearest::nearest_point;
 pub(crate) use refine::{Refined, refine};
 pub(crate) use room::shares;
 pub(crate) use survey::{largest_gap, survey};
+
+pub(crate) use stretch::{largest_stretch, local_stretch};
