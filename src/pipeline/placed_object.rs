@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::material::Part;
 use crate::mesh::Mesh;
 use crate::scene::{Object, Source};
-use crate::shape::{Appearance, Shape};
+use crate::shape::Shape;
 
 /// If a shape has more facets than it may have, its allowed deviation is multiplied by this factor until it fits.
 const COARSER: f64 = 1.1;
@@ -31,7 +31,6 @@ pub(super) struct PlacedObject {
 #[derive(Clone, Debug)]
 pub(super) struct Shaped {
     pub(super) shape: Shape,
-    pub(super) appearance: Appearance,
     pub(super) model_to_rest: DAffine3,
     pub(super) largest_scale: f64,
     /// Bound on the distance between the facets of the placed parts and the curved surface, in the rest frame.
@@ -94,9 +93,8 @@ impl PlacedObject {
 impl Shaped {
     pub(super) fn of(object: &Object) -> Option<Self> {
         match &object.source {
-            Source::Shape(shape, appearance) => Some(Self {
+            Source::Shape(shape, _) => Some(Self {
                 shape: shape.clone(),
-                appearance: *appearance,
                 model_to_rest: object.model_to_rest(),
                 largest_scale: object.scale.largest(),
                 deviation: shape.deviation() * object.scale.largest(),
@@ -137,16 +135,12 @@ impl Shaped {
         shape: &Shape,
         parts: &[(String, Part)],
     ) -> Vec<(String, Part)> {
-        let model = shape
-            .model(&self.appearance)
-            .expect("coarser than what a shape may have");
-        let made = parts
-            .iter()
-            .zip(model.parts)
-            .map(|((name, part), mut made)| {
-                made.material = part.material.clone();
-                (name.clone(), made.transformed(&self.model_to_rest))
-            });
+        let mesh = shape.mesh().expect("coarser than what a shape may have");
+        let made = parts.iter().map(|(name, part)| {
+            let made = Part::new("", mesh.clone(), part.material.clone());
+            let made = made.expect("a material that fitted the same shape");
+            (name.clone(), made.transformed(&self.model_to_rest))
+        });
         made.collect()
     }
 }

@@ -66,11 +66,13 @@ impl<'a> Plan<'a> {
         };
         if let Some(shaped) = &placed_object.shaped {
             let mesh = placed_object.parts[0].1.mesh();
+            let max_deviation = || match shaped.deviation {
+                // A flat shape has no other distance from itself.
+                0.0 => f64::INFINITY,
+                _ => plan.tolerance.max_deviation(mesh, &plan.seen),
+            };
             let shape = match wanted.subdivide {
-                true => shaped.within(
-                    plan.tolerance.max_deviation(mesh, &plan.seen),
-                    plan.max_triangles(granted),
-                ),
+                true => shaped.within(max_deviation(), plan.max_triangles(granted)),
                 false => shaped.shape.clone(),
             };
             plan.tolerance.deviation = shape.deviation() * shaped.largest_scale;

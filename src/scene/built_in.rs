@@ -38,6 +38,26 @@ pub const BUILT_IN_SCENES: &[BuiltInScene] = &[
         summary: "a sphere at 0.999 c and a cube at 0.8 c, as photographed by Hornof et al. 2025",
         json: include_str!("../../examples/scenes/snapshot.json"),
     },
+    BuiltInScene {
+        name: "flight",
+        summary: "over a test scene, accelerating from 0.95 c to 0.994 c (Rau et al. 1998, Figs 6-9)",
+        json: include_str!("../../examples/scenes/flight.json"),
+    },
+    BuiltInScene {
+        name: "takeoff",
+        summary: "constant thrust from rest: what is ahead recedes first, then freezes at the horizon behind",
+        json: include_str!("../../examples/scenes/takeoff.json"),
+    },
+    BuiltInScene {
+        name: "turn",
+        summary: "a coordinated turn at 0.9 c, as an airplane flies it",
+        json: include_str!("../../examples/scenes/turn.json"),
+    },
+    BuiltInScene {
+        name: "orbit",
+        summary: "a full circle at 0.6 c",
+        json: include_str!("../../examples/scenes/orbit.json"),
+    },
 ];
 
 impl BuiltInScene {

@@ -10,6 +10,7 @@ use super::{
     Sphere, Torus, checker, round,
 };
 use crate::material::{Model, Part};
+use crate::mesh::Mesh;
 
 /// A shape that the program makes itself, centred on the origin of its object.
 ///
@@ -207,24 +208,44 @@ impl Shape {
     ///
     /// More than 20 million triangles, or lengths too different for `f64`.
     pub fn model(&self, appearance: &Appearance) -> Result<Model, ShapeError> {
-        check_proportions(&self.lengths())?;
-        let (surface, checker_cells) = match self {
-            Self::Sphere(shape) => (shape.surface()?, Sphere::CHECKER_CELLS),
-            Self::Cuboid(shape) => (shape.surface()?, Cuboid::CHECKER_CELLS),
-            Self::Cylinder(shape) => (shape.surface()?, round::CHECKER_TILE),
-            Self::Cone(shape) => (shape.surface()?, round::CHECKER_TILE),
-            Self::Torus(shape) => (shape.surface()?, Torus::CHECKER_CELLS),
-            Self::Rod(shape) => (shape.surface()?, round::CHECKER_TILE),
-            Self::Grid(shape) => (shape.surface()?, Grid::CHECKER_CELLS),
-            Self::Lattice(shape) => (shape.surface()?, Lattice::CHECKER_CELLS),
-        };
-        let material = checker::material(appearance, checker_cells);
-        let mesh = surface.into_mesh()?.made_by(self.clone());
-        let part = Part::new("", mesh, Some(Arc::new(material)))?;
+        let material = checker::material(appearance, self.checker_cells());
+        let part = Part::new("", self.mesh()?, Some(Arc::new(material)))?;
         Ok(Model {
             parts: vec![part],
             origin: None,
         })
+    }
+
+    /// The mesh of [`Shape::model`] alone.
+    ///
+    /// # Errors
+    ///
+    /// As [`Shape::model`].
+    pub fn mesh(&self) -> Result<Mesh, ShapeError> {
+        check_proportions(&self.lengths())?;
+        let surface = match self {
+            Self::Sphere(shape) => shape.surface()?,
+            Self::Cuboid(shape) => shape.surface()?,
+            Self::Cylinder(shape) => shape.surface()?,
+            Self::Cone(shape) => shape.surface()?,
+            Self::Torus(shape) => shape.surface()?,
+            Self::Rod(shape) => shape.surface()?,
+            Self::Grid(shape) => shape.surface()?,
+            Self::Lattice(shape) => shape.surface()?,
+        };
+        Ok(surface.into_mesh()?.made_by(self.clone()))
+    }
+
+    /// Columns and rows of the checker.
+    fn checker_cells(&self) -> [u32; 2] {
+        match self {
+            Self::Sphere(_) => Sphere::CHECKER_CELLS,
+            Self::Cuboid(_) => Cuboid::CHECKER_CELLS,
+            Self::Cylinder(_) | Self::Cone(_) | Self::Rod(_) => round::CHECKER_TILE,
+            Self::Torus(_) => Torus::CHECKER_CELLS,
+            Self::Grid(_) => Grid::CHECKER_CELLS,
+            Self::Lattice(_) => Lattice::CHECKER_CELLS,
+        }
     }
 
     /// All lengths of the shape and the gaps that they leave.
