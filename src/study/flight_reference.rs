@@ -376,3 +376,102 @@ fn unit<const N: usize>(vector: [Twofold; N]) -> [Twofold; N] {
         .sqrt();
     vector.map(|x| x / length)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spacetime::Integrator;
+
+    /// 17/8 in Lorentz factor: the stretch is 4, and all numbers of the start are exact.
+    fn reference(from_rest: bool, segments: Vec<Segment>) -> FlightReference {
+        let velocity = match from_rest {
+            true => Velocity::ZERO,
+            false => Velocity::from_gamma(2.125, DVec3::X).unwrap(),
+        };
+        assert!([1.0, 4.0].contains(&velocity.stretch()));
+        let start = Moment::new(Event::default(), Lorentz::boost(velocity));
+        let flight = Flight::new(start, segments, Integrator::Exact).unwrap();
+        FlightReference::new(&flight).unwrap()
+    }
+
+    fn free(proper_time: f64, acceleration: DVec3, turn_rate: DVec3) -> Segment {
+        Segment::free(proper_time, acceleration, turn_rate).unwrap()
+    }
+
+    #[track_caller]
+    fn assert_30_digits(found: Twofold, expected: Twofold) {
+        let off = (found - expected).value().abs();
+        assert!(
+            off <= 1e-29 * expected.value().abs().max(1.0),
+            "{found:?} {expected:?}"
+        );
+    }
+
+    /// The type of which all functions are polynomials.
+    #[test]
+    fn the_null_type_is_a_polynomial() {
+        let end = reference(true, vec![free(3.0, DVec3::X, DVec3::Z)]).end;
+        let expected = [7.5, 4.5, 4.5, 0.0].map(Twofold::from);
+        let velocity = [5.5, 3.0, 4.5, 0.0].map(Twofold::from);
+        for i in 0..4 {
+            assert_30_digits(end.displacement[i], expected[i]);
+            assert_30_digits(end.rows[i][0], velocity[i]);
+        }
+    }
+
+    /// Thrust of 1 for a proper time of 1: the hyperbolic sine and cosine of 1, to 32 digits in two numbers each.
+    #[test]
+    fn a_rocket_flies_a_hyperbola() {
+        let FlightReference { end, uncertainty } =
+            reference(true, vec![free(1.0, DVec3::X, DVec3::ZERO)]);
+        let number = |high: f64, low: f64| Twofold::from(high) + Twofold::from(low);
+        let sinh = number(1.175_201_193_643_801_4, 7.849_672_142_285_669e-17);
+        let cosh = number(1.543_080_634_815_243_7, 6.606_796_775_006_833e-17);
+        assert_30_digits(end.displacement[0], sinh);
+        assert_30_digits(end.displacement[1], cosh - Twofold::ONE);
+        assert_30_digits(end.rows[0][0], cosh);
+        assert_30_digits(end.rows[0][1], sinh);
+        let estimate = uncertainty.event().max(uncertainty.axes);
+        assert!((1e-32..1e-29).contains(&estimate), "{uncertainty:?}");
+    }
+
+    /// Coordinated steering at constant speed, 15/17, has the turn rate 17/15 of the acceleration.
+    #[test]
+    fn coordinated_steering_leads_around_a_circle() {
+        let acceleration = DVec3::Y * 0.9375;
+        let steered = Segment::coordinated(7.0, acceleration).unwrap();
+        let steered = reference(false, vec![steered]);
+        let turned = reference(false, vec![free(7.0, acceleration, DVec3::Z * 1.0625)]);
+        let apart = steered.end.apart(&turned.end);
+        assert!(apart.event().max(apart.axes) < 1e-28, "{apart:?}");
+    }
+
+    /// Where the speed changes, the rapidity grows by what the acceleration along the motion adds: the stretch, 4 in the
+    /// beginning, by `e`.
+    #[test]
+    fn coordinated_steering_keeps_the_direction_of_motion() {
+        let steered = Segment::coordinated(4.0, DVec3::new(0.25, 0.5, -0.75)).unwrap();
+        let FlightReference { end, uncertainty } = reference(false, vec![steered]);
+        let (cosh, sinh) = Twofold::cosh_sinh(1.0);
+        let (four, half) = (Twofold::from(4.0), Twofold::from(0.5));
+        let (stretch, back) = (four * (cosh + sinh), (cosh - sinh) / four);
+        let [gamma, ahead, up, right] = end.rows[0];
+        assert_30_digits(gamma, (stretch + back) * half);
+        assert_30_digits(ahead, (stretch - back) * half);
+        assert!(up.value().abs().max(right.value().abs()) < 1e-29, "{end:?}");
+        assert!(uncertainty.event() < 1e-28, "{uncertainty:?}");
+    }
+
+    #[test]
+    fn steering_at_rest_is_straight() {
+        let thrust = DVec3::new(0.5, 0.0, 0.25);
+        let steered = reference(true, vec![Segment::coordinated(2.0, thrust).unwrap()]);
+        let straight = reference(true, vec![free(2.0, thrust, DVec3::ZERO)]);
+        assert_eq!(steered.end, straight.end);
+        // Through rest and back along the same line.
+        let brake = Segment::coordinated(8.0, DVec3::NEG_X).unwrap();
+        let braked = reference(false, vec![brake]);
+        let straight = reference(false, vec![free(8.0, DVec3::NEG_X, DVec3::ZERO)]);
+        assert_eq!(braked.end, straight.end);
+    }
+}
