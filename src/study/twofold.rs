@@ -118,6 +118,8 @@ impl Div for Twofold {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::SQRT_2;
+
     use super::*;
 
     fn number(number: f64) -> Twofold {
@@ -147,10 +149,10 @@ mod tests {
         assert_eq!(number(0.0).sqrt(), number(0.0));
     }
 
-    /// The first 33 digits of the square root of 2, in two numbers.
+    /// The square root of 2 and what its nearest `f64` leaves.
     #[test]
     fn there_are_32_digits() {
-        let expected = Twofold::renormalized(1.4142135623730951, -9.667_293_313_452_913e-17);
+        let expected = Twofold::renormalized(SQRT_2, -9.667_293_313_452_913e-17);
         assert_same(number(2.0).sqrt(), expected);
     }
 
