@@ -197,6 +197,10 @@ fn integrators(args: &CostArgs, verbosity: Verbosity) -> anyhow::Result<()> {
     refuse(&[("--only", args.study.only.is_some())], others)?;
     refuse(&args.meshes.given(), others)?;
     refuse(&args.pictures.given(), others)?;
+    refuse(
+        &args.observer.beside_the_flight(),
+        "changes nothing for --integrators, which compares all integrators at the end of the flight",
+    )?;
     let input = Input::read(&args.input, &args.observer, verbosity)?;
     let files = [&output.json, &output.csv, &output.plot];
     check_destinations(files.into_iter().flatten().cloned(), &input.files)?;

@@ -371,6 +371,11 @@ fn what_is_not_of_flights_is_refused() {
             "paper.json --pixel-samples 2",
             "--pixel-samples is for meshes and pictures",
         ),
+        (
+            "paper.json --integrator exact",
+            "--integrator changes nothing for --integrators",
+        ),
+        ("paper.json --steps 1", "--steps changes nothing"),
         ("paper.json --json - --csv -", "cannot both go to stdout"),
         ("paper.json --plot a.gif", "unknown extension"),
     ] {
