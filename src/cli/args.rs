@@ -104,6 +104,15 @@ impl ObserverArgs {
         self.flight.as_deref()
     }
 
+    /// The flags that do not change where a flight leads.
+    pub(super) fn beside_the_flight(&self) -> [Given; 3] {
+        [
+            ("--integrator", self.integrator.is_some()),
+            ("--steps", self.steps.is_some()),
+            ("--marker", self.marker.is_some()),
+        ]
+    }
+
     /// The scene with everything that the flags say.
     pub(super) fn apply(&self, scene: Scene) -> anyhow::Result<Scene> {
         let mut observer = scene.observer().clone();

@@ -1,23 +1,25 @@
 //! `photosurface cost`: what accuracy costs in time.
 
 use std::num::{NonZeroU32, NonZeroUsize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{anyhow, ensure};
 use photosurface::jobs::{
     Aim, CameraSettings, FieldOfView, FramingError, OBSERVER_FOV_DEG, with_suffix,
 };
 use photosurface::render::{CameraError, PictureSize};
-use photosurface::study::{Made, PlotSize, RaySettings, StudyError};
-use photosurface::write::write_whole;
+use photosurface::study::{IntegratorSettings, IntegratorStudy, Made, RaySettings, StudyError};
 use photosurface::{CostSettings, CostStudy, DVec3, PlacedScene, Tolerance};
 
 use super::accuracy::tolerance;
 use super::args::{Given, InputArgs, ObserverArgs, count, number, refuse, vector, whole_number};
 use super::camera::{samples, size};
-use super::cost_tables::{csv_of_meshes, csv_of_rays, tables_of};
+use super::cost_output::{CostOutputArgs, Picture, write};
+use super::cost_tables::{
+    csv_of_integrators, csv_of_meshes, csv_of_rays, table_of_integrators, tables_of,
+};
 use super::input::{Input, tell_of_missing};
-use super::messages::{Verbosity, grouped, print, print_if_open};
+use super::messages::{Verbosity, grouped, print_if_open};
 use super::output::{Bar, check_destinations, is_stdout};
 
 /// Show what accuracy costs: triangles, bytes, time and memory of meshes over tolerances, rays and time of pictures
@@ -28,6 +30,9 @@ use super::output::{Bar, check_destinations, is_stdout};
 ///
 /// Pictures: for each number of rays per pixel, draws the observer's view at every step by rays of light, and lists the time
 /// and the difference from a reference picture with many more, random rays.
+///
+/// Flights (--integrators): for each integrator and number of steps, lists the time and the error at the end of the
+/// observer's flight, against a reference of 30 digits.
 ///
 /// A table of each goes to stdout.
 #[derive(Debug, clap::Args)]
@@ -43,7 +48,7 @@ pub(super) struct CostArgs {
     #[command(flatten)]
     pictures: PictureArgs,
     #[command(flatten)]
-    output: OutputArgs,
+    output: CostOutputArgs,
     /// Print only the tables, without notes
     #[arg(short, long, help_heading = "Messages")]
     quiet: bool,
@@ -55,7 +60,11 @@ struct StudyArgs {
     /// Study only meshes or only pictures [default: both]
     #[arg(long, value_enum)]
     only: Option<Half>,
-    /// Runs of each tolerance and each picture, at least 1; times are medians
+    /// Study the observer's flight instead: the errors of event, velocity and axes at its end, and the time, by closed
+    /// forms, by the method of Runge and Kutta and by Euler's, each with 10 to 10,000 steps
+    #[arg(long)]
+    integrators: bool,
+    /// Runs of each tolerance, picture and integrator, at least 1; times are medians
     #[arg(
         long,
         value_name = "N",
@@ -110,43 +119,15 @@ struct PictureArgs {
     look: Option<DVec3>,
 }
 
-#[derive(Debug, clap::Args)]
-#[command(next_help_heading = "Output")]
-struct OutputArgs {
-    /// Write the study as JSON; - for stdout, in place of the table
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
-    /// Write the table with all digits as CSV, one line for each tolerance or number of rays; if both are studied, meshes go
-    /// to FILE and pictures to FILE_rays, with the same extension; - for stdout, in place of the table, with --only
-    #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
-    /// Draw triangles and time over the tolerance, rays and time over the error of pictures, all logarithmic, with the
-    /// slope of theory: .png or .svg
-    #[arg(long, value_name = "FILE")]
-    plot: Option<PathBuf>,
-    /// Size of the plot in pixels, from 640x480 to 8192x8192 [default: 960x480, or 960x780 for both]
-    #[arg(long, value_name = "WxH", value_parser = plot_size, requires = "plot")]
-    plot_size: Option<PlotSize>,
-}
-
-/// What a plot is written as.
-#[derive(Clone, Copy)]
-enum Picture {
-    Png,
-    Svg,
-}
-
 pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     let verbosity = Verbosity::new(args.quiet, false);
     let (output, only) = (&args.output, args.study.only);
+    if args.study.integrators {
+        return integrators(args, verbosity);
+    }
     let picture = output.picture()?;
-    let to_stdout = |file: &Option<PathBuf>| file.as_deref().is_some_and(is_stdout);
     ensure!(
-        !(to_stdout(&output.json) && to_stdout(&output.csv)),
-        "--json and --csv cannot both go to stdout"
-    );
-    ensure!(
-        !(to_stdout(&output.csv) && only.is_none()),
+        !(output.csv.as_deref().is_some_and(is_stdout) && only.is_none()),
         "--csv: two tables cannot both go to stdout; choose one with --only meshes or --only rays"
     );
     match only {
@@ -160,7 +141,7 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
         )?,
         None => {}
     }
-    let tables = output.tables(only);
+    let tables = tables(output.csv.as_ref(), only);
     let input = Input::read(&args.input, &args.observer, verbosity)?;
     let files = [&output.json, &output.plot].into_iter().flatten();
     let files = files.chain(tables.iter().map(|(path, _)| path));
@@ -187,24 +168,15 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     }
     tell(&study, settings.max_triangles, verbosity);
 
-    if !to_stdout(&output.json) && !to_stdout(&output.csv) {
+    if output.shows_tables() {
         print_if_open(|out| tables_of(&study, out))?;
     }
     // The plot may fail: no file is written before it is there.
-    let plot_size = match output.plot_size {
-        Some(size) => size,
-        None => PlotSize::new(960, if only.is_none() { 780 } else { 480 })?,
-    };
-    let plot = picture.map(|(path, picture)| {
-        let drawn = match picture {
-            Picture::Png => study.plot_png(plot_size),
-            Picture::Svg => study.plot_svg(plot_size).map(String::into_bytes),
-        };
-        drawn.context("--plot").map(|bytes| (path, bytes))
-    });
-    if let Some((path, bytes)) = plot.transpose()? {
-        write(path, &bytes)?;
-    }
+    let height = if only.is_none() { 780 } else { 480 };
+    output.write_plot(picture, height, |picture, size| match picture {
+        Picture::Png => study.plot_png(size),
+        Picture::Svg => study.plot_svg(size).map(String::into_bytes),
+    })?;
     if let Some(path) = &output.json {
         write(path, (study.to_json() + "\n").as_bytes())?;
     }
@@ -214,6 +186,51 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
             Half::Rays => csv_of_rays(&study.rays),
         };
         write(path, csv.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// The study of the scene's flight.
+fn integrators(args: &CostArgs, verbosity: Verbosity) -> anyhow::Result<()> {
+    let output = &args.output;
+    let picture = output.picture()?;
+    let others = "is for meshes and pictures, which --integrators leaves out";
+    refuse(&[("--only", args.study.only.is_some())], others)?;
+    refuse(&args.meshes.given(), others)?;
+    refuse(&args.pictures.given(), others)?;
+    refuse(
+        &args.observer.beside_the_flight(),
+        "changes nothing for --integrators, which compares all integrators at the end of the flight",
+    )?;
+    let input = Input::read(&args.input, &args.observer, verbosity)?;
+    let files = [&output.json, &output.csv, &output.plot];
+    check_destinations(files.into_iter().flatten().cloned(), &input.files)?;
+
+    let settings = IntegratorSettings {
+        repeats: args.study.repeats,
+        ..IntegratorSettings::default()
+    };
+    let study = IntegratorStudy::new(&input.scene, &settings);
+    let study = study.map_err(|error| match error {
+        StudyError::NoFlight => anyhow!(
+            "--integrators: {} has no flight; give one with --flight, or study a scene that has one, such as the \
+             built-in scenes flight, takeoff, turn and orbit",
+            input.name
+        ),
+        _ => anyhow::Error::new(error).context("--integrators"),
+    })?;
+    if output.shows_tables() {
+        print_if_open(|out| table_of_integrators(&study, out))?;
+    }
+    output.write_plot(picture, 480, |picture, size| match picture {
+        Picture::Png => study.plot_png(size),
+        Picture::Svg => study.plot_svg(size).map(String::into_bytes),
+    })?;
+    if let Some(path) = &output.json {
+        write(path, (study.to_json() + "\n").as_bytes())?;
+    }
+    if let Some(path) = &output.csv {
+        write(path, csv_of_integrators(&study.rows).as_bytes())?;
     }
     Ok(())
 }
@@ -294,36 +311,17 @@ impl PictureArgs {
     }
 }
 
-impl OutputArgs {
-    /// A file for each table.
-    fn tables(&self, only: Option<Half>) -> Vec<(PathBuf, Half)> {
-        let Some(path) = &self.csv else {
-            return vec![];
-        };
-        match only {
-            Some(half) => vec![(path.clone(), half)],
-            None => vec![
-                (path.clone(), Half::Meshes),
-                (with_suffix(path, "_rays"), Half::Rays),
-            ],
-        }
-    }
-
-    fn picture(&self) -> anyhow::Result<Option<(&Path, Picture)>> {
-        let Some(path) = self.plot.as_deref() else {
-            return Ok(None);
-        };
-        let extension = path
-            .extension()
-            .map(|extension| extension.to_string_lossy().to_ascii_lowercase());
-        match extension.as_deref() {
-            Some("png") => Ok(Some((path, Picture::Png))),
-            Some("svg") => Ok(Some((path, Picture::Svg))),
-            _ => bail!(
-                "--plot {}: unknown extension, expected .png or .svg",
-                path.display()
-            ),
-        }
+/// A file for each table.
+fn tables(csv: Option<&PathBuf>, only: Option<Half>) -> Vec<(PathBuf, Half)> {
+    let Some(path) = csv else {
+        return vec![];
+    };
+    match only {
+        Some(half) => vec![(path.clone(), half)],
+        None => vec![
+            (path.clone(), Half::Meshes),
+            (with_suffix(path, "_rays"), Half::Rays),
+        ],
     }
 }
 
@@ -370,25 +368,6 @@ fn tell(study: &CostStudy, max_triangles: u64, verbosity: Verbosity) {
     }
 }
 
-fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    if is_stdout(path) {
-        return print(|out| Ok(out.write_all(bytes)?));
-    }
-    Ok(write_whole(path, |writer| Ok(writer.write_all(bytes)?))?)
-}
-
-/// `960x480`
-fn plot_size(text: &str) -> anyhow::Result<PlotSize> {
-    let sides = text
-        .split_once('x')
-        .context("expected WxH, such as 960x480")?;
-    let pixels = |side: &str| {
-        side.parse::<u32>()
-            .with_context(|| format!("\"{side}\" is not a number of pixels (expected e.g. 960)"))
-    };
-    Ok(PlotSize::new(pixels(sides.0)?, pixels(sides.1)?)?)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -408,24 +387,5 @@ mod tests {
             help.contains(&format!("[default: {OBSERVER_FOV_DEG};")),
             "{help}"
         );
-    }
-
-    #[test]
-    fn sizes_of_plots_are_read_as_people_write_them() {
-        assert_eq!(
-            plot_size("960x480").unwrap(),
-            PlotSize::new(960, 480).unwrap()
-        );
-        for wrong in [
-            "",
-            "960",
-            "960x",
-            "960x480x2",
-            "0x0",
-            "9.5x480",
-            "10000x480",
-        ] {
-            assert!(plot_size(wrong).is_err(), "{wrong}");
-        }
     }
 }

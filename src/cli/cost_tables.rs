@@ -4,7 +4,7 @@ use std::io::Write;
 
 use photosurface::CostStudy;
 use photosurface::scene::Unit;
-use photosurface::study::{MeshCost, RayCost};
+use photosurface::study::{IntegratorCost, IntegratorStudy, MeshCost, Method, RayCost};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -35,6 +35,17 @@ const RAY_HEADINGS: [&str; 7] = [
     "largest",
     "seconds",
     "rays/s",
+];
+
+const INTEGRATOR_HEADINGS: [&str; 8] = [
+    "integrator",
+    "steps",
+    "step",
+    "seconds",
+    "event error",
+    "relative",
+    "order",
+    "axes error",
 ];
 
 /// A table of meshes and one of pictures, as far as they were studied, and what the numbers are.
@@ -74,6 +85,35 @@ pub(super) fn tables_of(study: &CostStudy, out: &mut dyn Write) -> anyhow::Resul
         pictures.reference_error,
     )?;
     Ok(())
+}
+
+/// A table of integrators, and what the numbers are.
+pub(super) fn table_of_integrators(
+    study: &IntegratorStudy,
+    out: &mut dyn Write,
+) -> anyhow::Result<()> {
+    let cells = |cost| integrator_cells(study, cost);
+    table(INTEGRATOR_HEADINGS, study.rows.iter().map(cells), out)?;
+    writeln!(
+        out,
+        "errors (measured) are those at the end of the flight ({}, {} of proper time, there gamma {:.4}), in the scene \
+         frame: of the event a length, in time and space alike, and relative to the displacement, {:.4} long; of velocity \
+         and axes the largest of their components, over gamma; order is the power of the step with which the error of the \
+         event falls, where it is not rounding; the reference is off by {:.0e} and {:.0e}, by its own estimate; times are \
+         medians of {}",
+        counted(study.segments, "segment"),
+        study.proper_time,
+        study.gamma,
+        length(&study.displacement),
+        study.event_uncertainty,
+        study.axes_uncertainty,
+        counted(study.repeats, "measurement"),
+    )?;
+    Ok(())
+}
+
+fn length(components: &[f64]) -> f64 {
+    components.iter().fold(0.0, |sum, x| x.hypot(sum))
 }
 
 /// Columns, each flush right below its heading.
@@ -141,6 +181,44 @@ fn ray_cells(cost: &RayCost) -> [String; RAY_HEADINGS.len()] {
     ]
 }
 
+/// One integrator with one number of steps.
+fn integrator_cells(
+    study: &IntegratorStudy,
+    cost: &IntegratorCost,
+) -> [String; INTEGRATOR_HEADINGS.len()] {
+    let mut cells: [String; INTEGRATOR_HEADINGS.len()] = std::array::from_fn(|_| "-".to_owned());
+    let name = match cost.method {
+        Method::Exact => "exact",
+        Method::Euler => "Euler",
+        Method::Rk4 => "RK4",
+    };
+    cells[0] = name.to_owned();
+    if let (Some(steps), Some(step)) = (cost.steps, cost.step) {
+        cells[1] = grouped(steps);
+        cells[2] = format!("{step:.2e}");
+    }
+    let Some(run) = &cost.run else {
+        return cells;
+    };
+    cells[3] = format!("{:.1e}", run.seconds);
+    let size = length(&study.displacement);
+    cells[4] = error(run.event_error, study.event_uncertainty);
+    cells[5] = error(run.relative_error, study.event_uncertainty / size);
+    if let Some(order) = run.order {
+        cells[6] = format!("{order:.2}");
+    }
+    cells[7] = error(run.axes_error, study.axes_uncertainty);
+    cells
+}
+
+/// An error, or the least one that its reference can tell.
+fn error(error: f64, uncertainty: f64) -> String {
+    match error > uncertainty {
+        true => format!("{error:.2e}"),
+        false => format!("<{uncertainty:.0e}"),
+    }
+}
+
 /// Columns of the CSV of meshes, and where their numbers stand in the JSON of a tolerance.
 const MESH_COLUMNS: [(&str, &str); 22] = [
     ("tolerance", "/tolerance"),
@@ -178,12 +256,29 @@ const RAY_COLUMNS: [(&str, &str); 8] = [
     ("largest_error", "/largest_error"),
 ];
 
+const INTEGRATOR_COLUMNS: [(&str, &str); 10] = [
+    ("method", "/method"),
+    ("steps", "/steps"),
+    ("step", "/step"),
+    ("seconds", "/run/seconds"),
+    ("time_error", "/run/time_error"),
+    ("position_error", "/run/position_error"),
+    ("event_error", "/run/event_error"),
+    ("relative_error", "/run/relative_error"),
+    ("axes_error", "/run/axes_error"),
+    ("order", "/run/order"),
+];
+
 pub(super) fn csv_of_meshes(meshes: &[MeshCost]) -> String {
     csv(MESH_COLUMNS, meshes)
 }
 
 pub(super) fn csv_of_rays(rays: &[RayCost]) -> String {
     csv(RAY_COLUMNS, rays)
+}
+
+pub(super) fn csv_of_integrators(rows: &[IntegratorCost]) -> String {
+    csv(INTEGRATOR_COLUMNS, rows)
 }
 
 /// Names of the columns in the first line; what is not known is empty.
@@ -193,6 +288,7 @@ fn csv<const N: usize>(columns: [(&str, &str); N], costs: &[impl Serialize]) -> 
         let json = serde_json::to_value(cost).expect("names and numbers");
         let cells = columns.map(|(_, place)| match json.pointer(place) {
             None | Some(Value::Null) => String::new(),
+            Some(Value::String(text)) => text.clone(),
             Some(value) => value.to_string(),
         });
         lines.push(cells.join(","));

@@ -6,6 +6,7 @@ mod camera;
 mod check;
 mod command;
 mod cost;
+mod cost_output;
 mod cost_tables;
 mod example;
 mod export;

@@ -46,8 +46,11 @@ pub enum PlotError {
         least_height = MIN_SIZE.1
     )]
     Size(u32, u32),
-    /// Every tolerance needs more triangles than were allowed, and no picture has an error.
-    #[error("there is nothing to plot: no tolerance was carried out, and no picture is off")]
+    /// Every tolerance needs more triangles than were allowed, and no picture has an error; or no integrator has steps
+    /// that are short enough.
+    #[error(
+        "there is nothing to plot: no tolerance was carried out, no picture is off, and no integrator came to the end"
+    )]
     Nothing,
     /// The drawing library says no.
     #[error("cannot draw the plot")]

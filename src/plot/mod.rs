@@ -7,4 +7,4 @@ pub(crate) use canvas::{
     Area, BLUE, Drawing, Drawn, FAMILY, GREEN, GREY, ORANGE, VIOLET, png, shortened, svg,
 };
 pub use canvas::{PlotError, PlotSize};
-pub(crate) use panel::{Curve, Panel};
+pub(crate) use panel::{Curve, Panel, Theory};

@@ -1,4 +1,4 @@
-//! One pair of logarithmic axes with curves and the slope of theory.
+//! One pair of logarithmic axes with curves and the slopes of theory.
 
 use std::ops::Range;
 
@@ -39,19 +39,26 @@ impl Curve {
 pub(crate) struct Panel {
     pub(crate) x_text: &'static str,
     pub(crate) y_text: &'static str,
-    /// Through this point goes the line of theory.
-    pub(crate) through: (f64, f64),
-    /// To which power of accuracy theory says that cost grows.
-    pub(crate) slope: f64,
-    /// The same in words.
-    pub(crate) slope_text: &'static str,
+    /// Whether abscissae are logarithms of accuracies, whose inverses, tolerances or errors, stand at the axis.
+    pub(crate) over_errors: bool,
+    pub(crate) theories: Vec<Theory>,
+    /// What the lines of theory say.
+    pub(crate) theory_text: &'static str,
     pub(crate) curves: Vec<Curve>,
+}
+
+/// A line of theory.
+pub(crate) struct Theory {
+    /// A point on it.
+    pub(crate) through: (f64, f64),
+    /// To which power of the abscissa's number theory says that the ordinate's grows; not zero.
+    pub(crate) slope: f64,
 }
 
 /// What a line or a dot stands for, and where in its line of the legend it stands.
 pub(crate) struct LegendItem<'a> {
     text: &'static str,
-    /// `None` of the line of theory.
+    /// `None` of the lines of theory.
     curve: Option<&'a Curve>,
     left: i32,
 }
@@ -76,7 +83,7 @@ impl Panel {
         let curves = self.curves.iter().map(|curve| (curve.label, Some(curve)));
         let mut lines: Vec<Vec<LegendItem<'_>>> = vec![vec![]];
         let mut left = 0;
-        for (text, curve) in curves.chain([(self.slope_text, None)]) {
+        for (text, curve) in curves.chain([(self.theory_text, None)]) {
             let width = px(SWATCH) + area.estimate_text_size(text, &style)?.0 as i32;
             if left > 0 && left + width > room {
                 lines.push(vec![]);
@@ -134,16 +141,22 @@ impl Panel {
             .y_desc(self.y_text)
             .x_labels(marks(width, ASIDE + 2.0 * MARGIN, 42.0))
             .y_labels(marks(height, 42.0 + MARGIN, 20.0))
-            .x_label_formatter(&|x| mark(-x))
+            .x_label_formatter(&|&x| mark(if self.over_errors { -x } else { x }))
             .y_label_formatter(&|&y| mark(y))
             .draw()?;
 
-        let (at, cost) = self.through;
-        let reaches = |y: f64| at + (y - cost) / self.slope;
-        let ends = [left.max(reaches(bottom)), right.min(reaches(top))];
-        let slope = ends.map(|x| (x, cost + self.slope * (x - at)));
         let thin = GREY.stroke_width(px(1.0) as u32);
-        chart.draw_series(DashedLineSeries::new(slope, px(5.0), px(4.0), thin))?;
+        for Theory { through, slope } in &self.theories {
+            let (at, cost) = through;
+            let reaches = |y: f64| at + (y - cost) / slope;
+            let (first, last) = match *slope > 0.0 {
+                true => (reaches(bottom), reaches(top)),
+                false => (reaches(top), reaches(bottom)),
+            };
+            let ends = [left.max(first), right.min(last)];
+            let line = ends.map(|x| (x, cost + slope * (x - at)));
+            chart.draw_series(DashedLineSeries::new(line, px(5.0), px(4.0), thin))?;
+        }
         for curve in &self.curves {
             let (color, joined) = (curve.color, curve.joined);
             let line = color.stroke_width(px(2.0) as u32);

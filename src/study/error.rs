@@ -5,6 +5,7 @@ use thiserror::Error;
 use crate::jobs::{Cancelled, ExportError};
 use crate::pipeline::PlacedSceneError;
 use crate::scene::Tolerance;
+use crate::spacetime::{FlightError, IntegratorError};
 
 /// Why a study has no result.
 #[derive(Debug, Error)]
@@ -41,6 +42,21 @@ pub enum StudyError {
         /// Why.
         source: ExportError,
     },
+    /// No flight to integrate.
+    #[error("the scene has no flight, expected an observer with at least one segment")]
+    NoFlight,
+    /// A flight that closed forms do not have, or with more steps than a flight may take.
+    #[error(transparent)]
+    Flight(#[from] FlightError),
+    /// Steps that have no length.
+    #[error(transparent)]
+    Step(#[from] IntegratorError),
+    /// A flight that takes too long by a reference of 30 digits, or leaves its numbers.
+    #[error(
+        "the flight is too long for the reference of 30 digits, expected turns and rapidities of less than about 7000 \
+         radians in all and a Lorentz factor below 1e150"
+    )]
+    LongFlight,
     /// The caller ended the study.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

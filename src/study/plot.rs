@@ -5,7 +5,7 @@ use plotters::prelude::*;
 
 use crate::plot::{
     Area, BLUE, Curve, Drawing, Drawn, FAMILY, GREEN, GREY, ORANGE, Panel, PlotError, PlotSize,
-    VIOLET, png, shortened, svg,
+    Theory, VIOLET, png, shortened, svg,
 };
 use crate::scene::Unit;
 use crate::study::{CostStudy, Made, MeshCost, RayCost};
@@ -59,9 +59,12 @@ impl CostStudy {
         let panel = |y_text, through, curves| Panel {
             x_text: tolerance,
             y_text,
-            through,
-            slope: 1.0,
-            slope_text: "inverse to the tolerance",
+            over_errors: true,
+            theories: vec![Theory {
+                through,
+                slope: 1.0,
+            }],
+            theory_text: "inverse to the tolerance",
             curves,
         };
         Some([
@@ -99,9 +102,12 @@ impl CostStudy {
         let panel = |y_text, through, curves| Panel {
             x_text: "picture error, of white in linear light",
             y_text,
-            through,
-            slope: 4.0 / 3.0,
-            slope_text: "edges by theory: error to the \u{2212}4/3",
+            over_errors: true,
+            theories: vec![Theory {
+                through,
+                slope: 4.0 / 3.0,
+            }],
+            theory_text: "edges by theory: error to the \u{2212}4/3",
             curves,
         };
         Some([
@@ -129,9 +135,9 @@ impl CostStudy {
 }
 
 /// Rows of panels under a title.
-struct CostDrawing {
-    title: String,
-    rows: Vec<[Panel; 2]>,
+pub(super) struct CostDrawing {
+    pub(super) title: String,
+    pub(super) rows: Vec<[Panel; 2]>,
 }
 
 impl Drawing for CostDrawing {

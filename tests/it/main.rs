@@ -71,6 +71,7 @@ mod cli {
 }
 
 mod cost {
+    mod integrators;
     mod meshes;
     mod rays;
 }
