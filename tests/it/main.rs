@@ -28,6 +28,7 @@ mod physics {
 mod flights {
     mod exact;
     mod known_answers;
+    mod seen;
 }
 
 mod tessellation {

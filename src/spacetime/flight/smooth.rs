@@ -76,7 +76,7 @@ mod tests {
             let (mut term, mut sinhc, mut cosh) = (big(1.0), big(0.0), big(0.0));
             for k in 0..400 {
                 cosh += &term;
-                term = term / big(f64::from(2 * k + 1).max(1.0));
+                term /= big(f64::from(2 * k + 1).max(1.0));
                 sinhc += &term;
                 term = term * &square / big(f64::from(2 * k + 2));
             }

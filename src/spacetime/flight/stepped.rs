@@ -227,11 +227,11 @@ impl State {
             }
             None => Velocity::ZERO,
         };
-        let boost = Lorentz::boost(velocity);
-        let axes =
-            axes.map(|[time, x, y, z]| boost.apply(Event::new(time, DVec3::new(x, y, z))).position);
+        // The boost back of what is across the four-velocity: x - t celerity / (1 + gamma).
+        let back = celerity / (1.0 + velocity.gamma());
+        let axes = axes.map(|[time, x, y, z]| DVec3::new(x, y, z) - back * time);
         let turn = DQuat::from_mat3(&orthonormal(axes));
-        boost.turned(Rotation::of_any_length(turn.inverse()))
+        Lorentz::boost(velocity).turned(Rotation::of_any_length(turn.inverse()))
     }
 }
 

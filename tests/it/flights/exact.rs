@@ -18,7 +18,7 @@ use photosurface::{DQuat, DVec3, Moment, Velocity};
 
 use crate::common::{Random, Worst};
 
-type Big = FBig<HalfEven, 2>;
+pub(super) type Big = FBig<HalfEven, 2>;
 
 /// Units in the last place of the natural scale; the worst seen is 1.5.
 const ULPS: f64 = 4.0;
@@ -26,22 +26,22 @@ const ULPS: f64 = 4.0;
 /// 77 digits, of which `exp(2 * 40)` takes 35.
 const BITS: usize = 256;
 
-fn big(value: f64) -> Big {
+pub(super) fn big(value: f64) -> Big {
     let exact = Big::try_from(value).expect("finite");
     exact.with_precision(BITS).value()
 }
 
-fn small(value: &Big) -> f64 {
+pub(super) fn small(value: &Big) -> f64 {
     value.to_f64().value()
 }
 
 /// The observer's four-velocity and axes, and its place, as columns in the scene frame.
 #[derive(Clone)]
-struct State([[Big; 5]; 4]);
+pub(super) struct State([[Big; 5]; 4]);
 
 impl State {
     /// The axes of a pure boost, turned.
-    fn new(velocity: Velocity, rotation: DQuat) -> Self {
+    pub(super) fn new(velocity: Velocity, rotation: DQuat) -> Self {
         let growth = big(velocity.rapidity()).exp();
         let shrink = big(1.0) / &growth;
         let (gamma, celerity) = (
@@ -143,7 +143,7 @@ impl State {
         self.after(a, w, proper_time)
     }
 
-    fn column(&self, k: usize) -> [Big; 4] {
+    pub(super) fn column(&self, k: usize) -> [Big; 4] {
         std::array::from_fn(|i| self.0[i][k].clone())
     }
 
@@ -154,7 +154,7 @@ impl State {
         self.components(&difference)
     }
 
-    fn components(&self, vector: &[Big; 4]) -> [f64; 4] {
+    pub(super) fn components(&self, vector: &[Big; 4]) -> [f64; 4] {
         std::array::from_fn(|k| {
             let axis = self.column(k);
             let space = (1..4).fold(big(0.0), |sum, i| sum + axis[i].clone() * &vector[i]);
@@ -191,7 +191,7 @@ fn stretch(gamma: f64) -> f64 {
 }
 
 /// A random flight of so many segments and at most `rapidity` of boosts.
-fn random_flight(random: &mut Random, count: usize, rapidity: f64) -> Vec<Segment> {
+pub(super) fn random_flight(random: &mut Random, count: usize, rapidity: f64) -> Vec<Segment> {
     let each = rapidity / count as f64;
     let segment = |random: &mut Random| {
         let acceleration = random.direction() * 10f64.powf(random.between(-3.0, 2.0));
@@ -225,7 +225,7 @@ fn random_flight(random: &mut Random, count: usize, rapidity: f64) -> Vec<Segmen
 }
 
 /// The states at the beginnings of all segments, then the one at the end.
-fn all_states(start: State, segments: &[Segment]) -> Vec<State> {
+pub(super) fn all_states(start: State, segments: &[Segment]) -> Vec<State> {
     let mut states = vec![start];
     for segment in segments {
         let before = states.last().expect("the start");
@@ -235,7 +235,7 @@ fn all_states(start: State, segments: &[Segment]) -> Vec<State> {
 }
 
 /// The states at the beginnings of all segments that have begun, then the one at `proper_time`.
-fn states_until(all: &[State], segments: &[Segment], proper_time: f64) -> Vec<State> {
+pub(super) fn states_until(all: &[State], segments: &[Segment], proper_time: f64) -> Vec<State> {
     let mut left = big(proper_time);
     for (index, segment) in segments.iter().enumerate() {
         let whole = big(segment.proper_time());
@@ -388,13 +388,14 @@ fn axes_stay_orthonormal_through_100_000_segments() {
 #[test]
 fn one_long_segment_is_many_short_ones() {
     let x = Velocity::from_beta(0.6, DVec3::X).expect("below 1");
-    let free = |a: DVec3, w: DVec3| -> Box<dyn Fn(f64) -> Segment> {
+    type OfDuration = Box<dyn Fn(f64) -> Segment>;
+    let free = |a: DVec3, w: DVec3| -> OfDuration {
         Box::new(move |time| Segment::free(time, a, w).expect("finite"))
     };
-    let coordinated = |a: DVec3| -> Box<dyn Fn(f64) -> Segment> {
+    let coordinated = |a: DVec3| -> OfDuration {
         Box::new(move |time| Segment::coordinated(time, a).expect("finite"))
     };
-    let cases: [(&str, Box<dyn Fn(f64) -> Segment>); 10] = [
+    let cases: [(&str, OfDuration); 10] = [
         ("linear", free(DVec3::new(0.3, 0.2, -0.1), DVec3::ZERO)),
         ("screw", free(DVec3::X, DVec3::X * 0.7)),
         ("rotational", free(DVec3::Y * 0.5, DVec3::Z * 2.0)),

@@ -164,6 +164,27 @@ fn scenes() -> Vec<(&'static str, Value, DVec3, f64)> {
             DVec3::new(0.0, 0.07, -1.0),
             24.0,
         ),
+        (
+            "thrust",
+            json!({ "observer": { "flight": [{ "proper_time": 5, "acceleration": [0.1, 0, -0.5] }] }, "steps": [1.9],
+                "objects": [
+                { "name": "lattice", "shape": { "lattice": { "cells": [2, 2, 2], "spacing": 1.5, "thickness": 0.4 } },
+                  "color": "#ff0000", "position": [0.3, 0.2, -6] },
+            ]}),
+            DVec3::new(0.05, 0.02, -1.0),
+            18.0,
+        ),
+        (
+            "coordinated turn",
+            json!({ "observer": { "velocity": { "beta": 0.8 }, "flight": [
+                    { "proper_time": 4, "acceleration": [-0.6, 0.1, 0.05], "steer": "coordinated" }] }, "steps": [2.5],
+                "objects": [
+                { "name": "cube", "shape": { "box": { "size": [2, 2, 2] } }, "color": "#ff0000", "checker": "#0000ff",
+                  "position": [-7, 0.5, -3], "velocity": { "beta": 0.3, "direction": [0, 1, 0] } },
+            ]}),
+            DVec3::new(0.0, 0.0, -1.0),
+            60.0,
+        ),
     ]
 }
 
