@@ -1,24 +1,24 @@
 //! `photosurface cost`: what accuracy costs in time.
 
 use std::num::{NonZeroU32, NonZeroUsize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, ensure};
 use photosurface::jobs::{
     Aim, CameraSettings, FieldOfView, FramingError, OBSERVER_FOV_DEG, with_suffix,
 };
 use photosurface::render::{CameraError, PictureSize};
 use photosurface::study::{Made, PlotSize, RaySettings, StudyError};
-use photosurface::write::write_whole;
 use photosurface::{CostSettings, CostStudy, DVec3, PlacedScene, Tolerance};
 
 use super::accuracy::tolerance;
 use super::args::{Given, InputArgs, ObserverArgs, count, number, refuse, vector, whole_number};
 use super::camera::{samples, size};
 use super::cost_tables::{csv_of_meshes, csv_of_rays, tables_of};
+use super::drawing::{DrawingFormat, plot_size};
 use super::input::{Input, tell_of_missing};
-use super::messages::{Verbosity, grouped, print, print_if_open};
-use super::output::{Bar, check_destinations, is_stdout};
+use super::messages::{Verbosity, grouped, print_if_open};
+use super::output::{Bar, check_destinations, is_stdout, write_result};
 
 /// Show what accuracy costs: triangles, bytes, time and memory of meshes over tolerances, rays and time of pictures
 ///
@@ -128,17 +128,10 @@ struct OutputArgs {
     plot_size: Option<PlotSize>,
 }
 
-/// What a plot is written as.
-#[derive(Clone, Copy)]
-enum Picture {
-    Png,
-    Svg,
-}
-
 pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     let verbosity = Verbosity::new(args.quiet, false);
     let (output, only) = (&args.output, args.study.only);
-    let picture = output.picture()?;
+    let drawing = DrawingFormat::of_flag("--plot", output.plot.as_deref())?;
     let to_stdout = |file: &Option<PathBuf>| file.as_deref().is_some_and(is_stdout);
     ensure!(
         !(to_stdout(&output.json) && to_stdout(&output.csv)),
@@ -194,25 +187,25 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
         Some(size) => size,
         None => PlotSize::new(960, if only.is_none() { 780 } else { 480 })?,
     };
-    let plot = picture.map(|(path, picture)| {
-        let drawn = match picture {
-            Picture::Png => study.plot_png(plot_size),
-            Picture::Svg => study.plot_svg(plot_size).map(String::into_bytes),
+    let plot = drawing.map(|(path, format)| {
+        let drawn = match format {
+            DrawingFormat::Png => study.plot_png(plot_size),
+            DrawingFormat::Svg => study.plot_svg(plot_size).map(String::into_bytes),
         };
         drawn.context("--plot").map(|bytes| (path, bytes))
     });
     if let Some((path, bytes)) = plot.transpose()? {
-        write(path, &bytes)?;
+        write_result(path, &bytes)?;
     }
     if let Some(path) = &output.json {
-        write(path, (study.to_json() + "\n").as_bytes())?;
+        write_result(path, (study.to_json() + "\n").as_bytes())?;
     }
     for (path, half) in &tables {
         let csv = match half {
             Half::Meshes => csv_of_meshes(&study.meshes),
             Half::Rays => csv_of_rays(&study.rays),
         };
-        write(path, csv.as_bytes())?;
+        write_result(path, csv.as_bytes())?;
     }
     Ok(())
 }
@@ -307,23 +300,6 @@ impl OutputArgs {
             ],
         }
     }
-
-    fn picture(&self) -> anyhow::Result<Option<(&Path, Picture)>> {
-        let Some(path) = self.plot.as_deref() else {
-            return Ok(None);
-        };
-        let extension = path
-            .extension()
-            .map(|extension| extension.to_string_lossy().to_ascii_lowercase());
-        match extension.as_deref() {
-            Some("png") => Ok(Some((path, Picture::Png))),
-            Some("svg") => Ok(Some((path, Picture::Svg))),
-            _ => bail!(
-                "--plot {}: unknown extension, expected .png or .svg",
-                path.display()
-            ),
-        }
-    }
 }
 
 /// Without a speed there is little to study.
@@ -369,25 +345,6 @@ fn tell(study: &CostStudy, max_triangles: u64, verbosity: Verbosity) {
     }
 }
 
-fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    if is_stdout(path) {
-        return print(|out| Ok(out.write_all(bytes)?));
-    }
-    Ok(write_whole(path, |writer| Ok(writer.write_all(bytes)?))?)
-}
-
-/// `960x480`
-fn plot_size(text: &str) -> anyhow::Result<PlotSize> {
-    let sides = text
-        .split_once('x')
-        .context("expected WxH, such as 960x480")?;
-    let pixels = |side: &str| {
-        side.parse::<u32>()
-            .with_context(|| format!("\"{side}\" is not a number of pixels (expected e.g. 960)"))
-    };
-    Ok(PlotSize::new(pixels(sides.0)?, pixels(sides.1)?)?)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -407,24 +364,5 @@ mod tests {
             help.contains(&format!("[default: {OBSERVER_FOV_DEG};")),
             "{help}"
         );
-    }
-
-    #[test]
-    fn sizes_of_plots_are_read_as_people_write_them() {
-        assert_eq!(
-            plot_size("960x480").unwrap(),
-            PlotSize::new(960, 480).unwrap()
-        );
-        for wrong in [
-            "",
-            "960",
-            "960x",
-            "960x480x2",
-            "0x0",
-            "9.5x480",
-            "10000x480",
-        ] {
-            assert!(plot_size(wrong).is_err(), "{wrong}");
-        }
     }
 }

@@ -5,11 +5,10 @@ use std::io::Write;
 use photosurface::CostStudy;
 use photosurface::scene::Unit;
 use photosurface::study::{MeshCost, RayCost};
-use serde::Serialize;
-use serde_json::Value;
 
 use super::accuracy::grouped_number;
 use super::messages::{counted, grouped, size};
+use super::tables::{csv, table};
 
 const MESH_HEADINGS: [&str; 13] = [
     "tolerance",
@@ -73,26 +72,6 @@ pub(super) fn tables_of(study: &CostStudy, out: &mut dyn Write) -> anyhow::Resul
         grouped(pictures.reference_samples_per_pixel as usize),
         pictures.reference_error,
     )?;
-    Ok(())
-}
-
-/// Columns, each flush right below its heading.
-fn table<const N: usize>(
-    headings: [&str; N],
-    lines: impl Iterator<Item = [String; N]>,
-    out: &mut dyn Write,
-) -> anyhow::Result<()> {
-    let mut rows = vec![headings.map(str::to_owned)];
-    rows.extend(lines);
-    let width = |column: usize| rows.iter().map(|row| row[column].len()).max().unwrap_or(0);
-    let widths: [usize; N] = std::array::from_fn(width);
-    for row in &rows {
-        let cells = row.iter().zip(widths);
-        let cells: Vec<String> = cells
-            .map(|(cell, width)| format!("{cell:>width$}"))
-            .collect();
-        writeln!(out, "{}", cells.join("  "))?;
-    }
     Ok(())
 }
 
@@ -184,18 +163,4 @@ pub(super) fn csv_of_meshes(meshes: &[MeshCost]) -> String {
 
 pub(super) fn csv_of_rays(rays: &[RayCost]) -> String {
     csv(RAY_COLUMNS, rays)
-}
-
-/// Names of the columns in the first line; what is not known is empty.
-fn csv<const N: usize>(columns: [(&str, &str); N], costs: &[impl Serialize]) -> String {
-    let mut lines = vec![columns.map(|(name, _)| name).join(",")];
-    for cost in costs {
-        let json = serde_json::to_value(cost).expect("names and numbers");
-        let cells = columns.map(|(_, place)| match json.pointer(place) {
-            None | Some(Value::Null) => String::new(),
-            Some(value) => value.to_string(),
-        });
-        lines.push(cells.join(","));
-    }
-    lines.join("\n") + "\n"
 }

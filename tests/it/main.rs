@@ -26,6 +26,7 @@ mod physics {
 }
 
 mod flights {
+    mod diagram;
     mod exact;
     mod known_answers;
 }
@@ -67,6 +68,7 @@ mod cli {
     mod commands;
     mod faults;
     mod flags;
+    mod flight;
     mod render;
 }
 
