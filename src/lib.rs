@@ -47,7 +47,7 @@
 //!
 //! | for | see |
 //! |---|---|
-//! | jobs: load, export, pictures, with settings, progress and errors | [`jobs`] |
+//! | jobs: load, export, pictures, with settings, progress and errors; Minkowski diagrams | [`jobs`] |
 //! | scenes from JSON or from Rust, and shapes | [`scene`], [`shape`] |
 //! | meshes and materials, from files or of your own | [`mesh`], [`material`], [`read`] |
 //! | photosurfaces, predictions, certificates | [`pipeline`], [`tessellate`] |

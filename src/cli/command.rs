@@ -10,7 +10,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 use rayon::ThreadPoolBuilder;
 
 use super::status::{INTERRUPTED, Status, ended};
-use super::{args, check, cost, example, export, messages, render, schema};
+use super::{args, check, cost, example, export, flight, messages, render, schema};
 
 /// More threads than so many for each core, and than so many on any machine, only wait for each other.
 const THREADS_PER_CORE: usize = 4;
@@ -45,6 +45,7 @@ enum Command {
     Render(render::RenderArgs),
     Check(check::CheckArgs),
     Cost(cost::CostArgs),
+    Flight(flight::FlightArgs),
     Example(example::ExampleArgs),
     Schema(schema::SchemaArgs),
 }
@@ -73,6 +74,7 @@ impl Command {
             Self::Render(args) => render::run(args),
             Self::Check(args) => check::run(args),
             Self::Cost(args) => cost::run(args).map(|()| Status::Done),
+            Self::Flight(args) => flight::run(args).map(|()| Status::Done),
             Self::Example(args) => example::run(args).map(|()| Status::Done),
             Self::Schema(args) => schema::run(args).map(|()| Status::Done),
         }

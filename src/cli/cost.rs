@@ -14,13 +14,14 @@ use photosurface::{CostSettings, CostStudy, DVec3, PlacedScene, Tolerance};
 use super::accuracy::tolerance;
 use super::args::{Given, InputArgs, ObserverArgs, count, number, refuse, vector, whole_number};
 use super::camera::{samples, size};
-use super::cost_output::{CostOutputArgs, Picture, write};
+use super::cost_output::CostOutputArgs;
 use super::cost_tables::{
     csv_of_integrators, csv_of_meshes, csv_of_rays, table_of_integrators, tables_of,
 };
+use super::drawing::DrawingFormat;
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, grouped, print_if_open};
-use super::output::{Bar, check_destinations, is_stdout};
+use super::output::{Bar, check_destinations, is_stdout, write_result};
 
 /// Show what accuracy costs: triangles, bytes, time and memory of meshes over tolerances, rays and time of pictures
 ///
@@ -125,7 +126,7 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     if args.study.integrators {
         return integrators(args, verbosity);
     }
-    let picture = output.picture()?;
+    let drawing = output.drawing()?;
     ensure!(
         !(output.csv.as_deref().is_some_and(is_stdout) && only.is_none()),
         "--csv: two tables cannot both go to stdout; choose one with --only meshes or --only rays"
@@ -173,19 +174,19 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     }
     // The plot may fail: no file is written before it is there.
     let height = if only.is_none() { 780 } else { 480 };
-    output.write_plot(picture, height, |picture, size| match picture {
-        Picture::Png => study.plot_png(size),
-        Picture::Svg => study.plot_svg(size).map(String::into_bytes),
+    output.write_plot(drawing, height, |format, size| match format {
+        DrawingFormat::Png => study.plot_png(size),
+        DrawingFormat::Svg => study.plot_svg(size).map(String::into_bytes),
     })?;
     if let Some(path) = &output.json {
-        write(path, (study.to_json() + "\n").as_bytes())?;
+        write_result(path, (study.to_json() + "\n").as_bytes())?;
     }
     for (path, half) in &tables {
         let csv = match half {
             Half::Meshes => csv_of_meshes(&study.meshes),
             Half::Rays => csv_of_rays(&study.rays),
         };
-        write(path, csv.as_bytes())?;
+        write_result(path, csv.as_bytes())?;
     }
     Ok(())
 }
@@ -193,7 +194,7 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
 /// The study of the scene's flight.
 fn integrators(args: &CostArgs, verbosity: Verbosity) -> anyhow::Result<()> {
     let output = &args.output;
-    let picture = output.picture()?;
+    let drawing = output.drawing()?;
     let others = "is for meshes and pictures, which --integrators leaves out";
     refuse(&[("--only", args.study.only.is_some())], others)?;
     refuse(&args.meshes.given(), others)?;
@@ -222,15 +223,15 @@ fn integrators(args: &CostArgs, verbosity: Verbosity) -> anyhow::Result<()> {
     if output.shows_tables() {
         print_if_open(|out| table_of_integrators(&study, out))?;
     }
-    output.write_plot(picture, 480, |picture, size| match picture {
-        Picture::Png => study.plot_png(size),
-        Picture::Svg => study.plot_svg(size).map(String::into_bytes),
+    output.write_plot(drawing, 480, |format, size| match format {
+        DrawingFormat::Png => study.plot_png(size),
+        DrawingFormat::Svg => study.plot_svg(size).map(String::into_bytes),
     })?;
     if let Some(path) = &output.json {
-        write(path, (study.to_json() + "\n").as_bytes())?;
+        write_result(path, (study.to_json() + "\n").as_bytes())?;
     }
     if let Some(path) = &output.csv {
-        write(path, csv_of_integrators(&study.rows).as_bytes())?;
+        write_result(path, csv_of_integrators(&study.rows).as_bytes())?;
     }
     Ok(())
 }

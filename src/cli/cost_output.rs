@@ -2,12 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, ensure};
 use photosurface::study::{PlotError, PlotSize};
-use photosurface::write::write_whole;
 
-use super::messages::print;
-use super::output::{extension, is_stdout};
+use super::drawing::{DrawingFormat, plot_size};
+use super::output::{is_stdout, write_result};
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Output")]
@@ -29,31 +28,14 @@ pub(super) struct CostOutputArgs {
     plot_size: Option<PlotSize>,
 }
 
-/// What a plot is written as.
-#[derive(Clone, Copy)]
-pub(super) enum Picture {
-    Png,
-    Svg,
-}
-
 impl CostOutputArgs {
     /// The file of the plot, if there is to be one, after a check that all outputs can be.
-    pub(super) fn picture(&self) -> anyhow::Result<Option<(&Path, Picture)>> {
+    pub(super) fn drawing(&self) -> anyhow::Result<Option<(&Path, DrawingFormat)>> {
         ensure!(
             !(to_stdout(&self.json) && to_stdout(&self.csv)),
             "--json and --csv cannot both go to stdout"
         );
-        let Some(path) = self.plot.as_deref() else {
-            return Ok(None);
-        };
-        match extension(path).as_deref() {
-            Some("png") => Ok(Some((path, Picture::Png))),
-            Some("svg") => Ok(Some((path, Picture::Svg))),
-            _ => bail!(
-                "--plot {}: unknown extension, expected .png or .svg",
-                path.display()
-            ),
-        }
+        DrawingFormat::of_flag("--plot", self.plot.as_deref())
     }
 
     /// Whether the tables for people go to stdout.
@@ -64,65 +46,21 @@ impl CostOutputArgs {
     /// Draws and writes the plot, so many pixels high unless the size is given.
     pub(super) fn write_plot(
         &self,
-        picture: Option<(&Path, Picture)>,
+        drawing: Option<(&Path, DrawingFormat)>,
         height: u32,
-        draw: impl Fn(Picture, PlotSize) -> Result<Vec<u8>, PlotError>,
+        draw: impl Fn(DrawingFormat, PlotSize) -> Result<Vec<u8>, PlotError>,
     ) -> anyhow::Result<()> {
-        let Some((path, picture)) = picture else {
+        let Some((path, format)) = drawing else {
             return Ok(());
         };
         let size = match self.plot_size {
             Some(size) => size,
             None => PlotSize::new(960, height)?,
         };
-        write(path, &draw(picture, size).context("--plot")?)
+        write_result(path, &draw(format, size).context("--plot")?)
     }
-}
-
-/// Writes to a file or, for `-`, to stdout.
-pub(super) fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    if is_stdout(path) {
-        return print(|out| Ok(out.write_all(bytes)?));
-    }
-    Ok(write_whole(path, |writer| Ok(writer.write_all(bytes)?))?)
 }
 
 fn to_stdout(file: &Option<PathBuf>) -> bool {
     file.as_deref().is_some_and(is_stdout)
-}
-
-/// `960x480`
-fn plot_size(text: &str) -> anyhow::Result<PlotSize> {
-    let sides = text
-        .split_once('x')
-        .context("expected WxH, such as 960x480")?;
-    let pixels = |side: &str| {
-        side.parse::<u32>()
-            .with_context(|| format!("\"{side}\" is not a number of pixels (expected e.g. 960)"))
-    };
-    Ok(PlotSize::new(pixels(sides.0)?, pixels(sides.1)?)?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sizes_of_plots_are_read_as_people_write_them() {
-        assert_eq!(
-            plot_size("960x480").unwrap(),
-            PlotSize::new(960, 480).unwrap()
-        );
-        for wrong in [
-            "",
-            "960",
-            "960x",
-            "960x480x2",
-            "0x0",
-            "9.5x480",
-            "10000x480",
-        ] {
-            assert!(plot_size(wrong).is_err(), "{wrong}");
-        }
-    }
 }

@@ -5,11 +5,10 @@ use std::io::Write;
 use photosurface::CostStudy;
 use photosurface::scene::Unit;
 use photosurface::study::{IntegratorCost, IntegratorStudy, MeshCost, Method, RayCost};
-use serde::Serialize;
-use serde_json::Value;
 
 use super::accuracy::grouped_number;
 use super::messages::{counted, grouped, size};
+use super::tables::{csv, table};
 
 const MESH_HEADINGS: [&str; 13] = [
     "tolerance",
@@ -114,26 +113,6 @@ pub(super) fn table_of_integrators(
 
 fn length(components: &[f64]) -> f64 {
     components.iter().fold(0.0, |sum, x| x.hypot(sum))
-}
-
-/// Columns, each flush right below its heading.
-fn table<const N: usize>(
-    headings: [&str; N],
-    lines: impl Iterator<Item = [String; N]>,
-    out: &mut dyn Write,
-) -> anyhow::Result<()> {
-    let mut rows = vec![headings.map(str::to_owned)];
-    rows.extend(lines);
-    let width = |column: usize| rows.iter().map(|row| row[column].len()).max().unwrap_or(0);
-    let widths: [usize; N] = std::array::from_fn(width);
-    for row in &rows {
-        let cells = row.iter().zip(widths);
-        let cells: Vec<String> = cells
-            .map(|(cell, width)| format!("{cell:>width$}"))
-            .collect();
-        writeln!(out, "{}", cells.join("  "))?;
-    }
-    Ok(())
 }
 
 /// One tolerance.
@@ -279,19 +258,4 @@ pub(super) fn csv_of_rays(rays: &[RayCost]) -> String {
 
 pub(super) fn csv_of_integrators(rows: &[IntegratorCost]) -> String {
     csv(INTEGRATOR_COLUMNS, rows)
-}
-
-/// Names of the columns in the first line; what is not known is empty.
-fn csv<const N: usize>(columns: [(&str, &str); N], costs: &[impl Serialize]) -> String {
-    let mut lines = vec![columns.map(|(name, _)| name).join(",")];
-    for cost in costs {
-        let json = serde_json::to_value(cost).expect("names and numbers");
-        let cells = columns.map(|(_, place)| match json.pointer(place) {
-            None | Some(Value::Null) => String::new(),
-            Some(Value::String(text)) => text.clone(),
-            Some(value) => value.to_string(),
-        });
-        lines.push(cells.join(","));
-    }
-    lines.join("\n") + "\n"
 }

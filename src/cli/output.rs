@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use photosurface::jobs::check_outputs;
-use photosurface::write::Format;
+use photosurface::write::{Format, write_whole};
 use photosurface::{Cancelled, Progress};
 
-use super::messages::Verbosity;
+use super::messages::{Verbosity, print};
 
 /// As `export` writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -56,6 +56,14 @@ pub(super) fn check_destinations(
 ) -> anyhow::Result<()> {
     let written = written.into_iter().filter(|file| !is_stdout(file));
     Ok(check_outputs(written, read)?)
+}
+
+/// Writes a result to stdout or to a file, which appears whole or not at all.
+pub(super) fn write_result(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    if is_stdout(path) {
+        return print(|out| Ok(out.write_all(bytes)?));
+    }
+    Ok(write_whole(path, |writer| Ok(writer.write_all(bytes)?))?)
 }
 
 /// A bar of so many things, on a terminal.

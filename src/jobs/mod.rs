@@ -1,8 +1,12 @@
-//! The tasks of the program (load, export, render), for every caller of the library.
+//! The tasks of the program (load, export, render, diagrams of flights), for every caller of the library.
 
 mod ahead;
 mod budget;
 mod clock;
+#[cfg(feature = "plot")]
+mod diagram;
+#[cfg(feature = "plot")]
+mod diagram_plot;
 mod export;
 mod export_settings;
 mod extent;
@@ -20,7 +24,14 @@ mod tally;
 mod views;
 mod work;
 
+#[cfg(feature = "plot")]
+pub use crate::plot::{PlotError, PlotSize};
 pub use budget::{DEFAULT_MAX_TRIANGLES, Fitted};
+#[cfg(feature = "plot")]
+pub use diagram::{
+    DiagramError, DiagramMoment, DiagramPoint, DiagramSettings, DiagramTick, Emission, PointLine,
+    WorldlineDiagram,
+};
 pub use export::{
     ExportLevel, Exported, FittedExport, export, export_levels, levels_of_detail, write_report,
 };

@@ -26,6 +26,7 @@ mod physics {
 }
 
 mod flights {
+    mod diagram;
     mod exact;
     mod known_answers;
     mod seen;
@@ -68,6 +69,7 @@ mod cli {
     mod commands;
     mod faults;
     mod flags;
+    mod flight;
     mod render;
 }
 

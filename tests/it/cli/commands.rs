@@ -635,6 +635,7 @@ fn help_names_every_command_and_the_units() {
         "export",
         "check",
         "cost",
+        "flight",
         "example",
         "schema",
         "the speed of light is 1",
