@@ -154,11 +154,6 @@ impl ObserverArgs {
             return Velocity::from_vector(vector).context("--velocity");
         }
         let scene = observer.velocity;
-        let speeds = [self.beta, self.one_minus_beta, self.gamma, self.rapidity];
-        if self.direction.is_none() && speeds.iter().all(Option::is_none) {
-            // To the last digit as the scene has it.
-            return Ok(scene);
-        }
         let direction = self.direction.unwrap_or(scene.heading());
         if self.direction.is_some() {
             Velocity::from_rapidity(0.0, direction).context("--direction")?;
