@@ -5,6 +5,7 @@
 //! budget. Then each object is granted a number of triangles at each step; all grants together are within the budget,
 //! even where the predictions are wrong.
 
+use super::forecast::{ObjectForecast, examined_steps};
 use super::placed_object::Granted;
 use super::predicting::{Predicted, predict};
 use super::{PlacedScene, SurfaceOptions};
@@ -23,9 +24,6 @@ const ADVISED: f64 = 4.0 / 3.0;
 const TRIANGLES_LOOKED_AT: usize = 50_000;
 const MIN_LOOKED_AT: usize = 5_000;
 
-/// A prediction examines at most this many steps, evenly spread.
-const STEPS_LOOKED_AT: usize = 32;
-
 /// The largest loosening that is tried. No tolerance fits a budget that is smaller than the number of triangles before
 /// refinement.
 const MAX_LOOSENING: f64 = 1e300;
@@ -39,8 +37,8 @@ const MAX_HALVINGS: usize = 8;
 /// the last few per cent would need a meaningless tolerance.
 const MIN_SPENT: f64 = 1.05;
 
-/// The predictions for each object at each examined step.
-type Forecast = Vec<Vec<Predicted>>;
+/// The predictions for each object.
+type Forecast = Vec<ObjectForecast>;
 
 /// A prediction for one object: how many triangles it needs, found in a fraction of the time of making them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,7 +61,7 @@ impl PlacedScene {
         self.predictions_by(&self.forecast(wanted))
     }
 
-    /// The predictions for each object at each examined step.
+    /// The predictions for each object.
     fn forecast(&self, wanted: SurfaceOptions) -> Forecast {
         let objects = 0..self.objects.len();
         objects
@@ -71,9 +69,9 @@ impl PlacedScene {
             .collect()
     }
 
-    fn predictions_by(&self, forecast: &[Vec<Predicted>]) -> Vec<Prediction> {
-        let predictions = forecast.iter().enumerate().map(|(object, at_some)| {
-            let predicted = self.all_steps(at_some);
+    fn predictions_by(&self, forecast: &[ObjectForecast]) -> Vec<Prediction> {
+        let predictions = forecast.iter().enumerate().map(|(object, of_object)| {
+            let predicted = of_object.all_steps();
             let most = self.max_triangles(object);
             Prediction {
                 triangles: predicted.triangles.min(most),
@@ -113,14 +111,12 @@ impl PlacedScene {
         }
         let mut forecast = self.forecast(wanted);
         let needs = self.predictions_by(&forecast);
-        let needed = |placed: &Self, object| {
-            let at_some = placed.predict_some(object, wanted);
-            placed.all_steps(&at_some).needed()
-        };
+        let needed =
+            |placed: &Self, object| placed.predict_some(object, wanted).all_steps().needed();
         // An aim stays where the prediction fits: if it was too low, counts hold.
         let mut objects: Vec<(usize, f64)> = forecast
             .iter()
-            .map(|at_some| self.all_steps(at_some).triangles)
+            .map(|of_object| of_object.all_steps().triangles)
             .enumerate()
             .collect();
         objects.sort_by(|(_, a), (_, b)| a.total_cmp(b));
@@ -128,7 +124,7 @@ impl PlacedScene {
         for (done, &(object, mut need)) in objects.iter().enumerate() {
             let share = left / (objects.len() - done) as f64;
             if wanted.subdivide && need > share {
-                let with_room = self.all_steps(&forecast[object]).needed();
+                let with_room = forecast[object].all_steps().needed();
                 need = self.loosen(object, share, with_room, needed);
                 forecast[object] = self.predict_some(object, wanted);
             }
@@ -151,7 +147,7 @@ impl PlacedScene {
 
     /// Grants each object a number of triangles at each step. All triangles together are at most `most`, or those of
     /// the sources if these are more.
-    fn grant(&mut self, forecast: &[Vec<Predicted>], most: u64) {
+    fn grant(&mut self, forecast: &[ObjectForecast], most: u64) {
         let steps = self.scene.steps().len();
         let sources: Vec<u64> = (self.objects.iter())
             .map(|placed_object| placed_object.source_triangles)
@@ -159,11 +155,9 @@ impl PlacedScene {
         let all: u64 = sources.iter().sum();
         // The number of triangles that each object needs at each step beyond those of its source.
         let needs: Vec<Vec<f64>> = (forecast.iter().zip(&sources))
-            .map(|(at_some, &source)| {
-                let need = |step: usize| {
-                    let last = (steps - 1).max(1) as f64;
-                    let at = step as f64 / last * (at_some.len() - 1) as f64;
-                    let need = at_some[at.round() as usize].needed() - source as f64;
+            .map(|(of_object, &source)| {
+                let need = |predicted: &Predicted| {
+                    let need = predicted.needed() - source as f64;
                     // A need of infinity or NaN counts as the whole budget.
                     if need < most as f64 {
                         need.max(0.0)
@@ -171,7 +165,7 @@ impl PlacedScene {
                         most as f64
                     }
                 };
-                (0..steps).map(need).collect()
+                of_object.each_step(steps, need)
             })
             .collect();
         let at_steps: Vec<(f64, u64)> = (needs.iter().zip(&sources))
@@ -260,39 +254,31 @@ impl PlacedScene {
         need
     }
 
-    /// The prediction for all steps together, from the examined steps.
-    fn all_steps(&self, at_some: &[Predicted]) -> Predicted {
-        let each = self.scene.steps().len() as f64 / at_some.len() as f64;
-        let mut sum = Predicted {
-            triangles: 0.0,
-            before: 0.0,
-            reachable: true,
-        };
-        for predicted in at_some {
-            sum.triangles += predicted.triangles * each;
-            sum.before += predicted.before * each;
-            sum.reachable &= predicted.reachable;
-        }
-        sum
-    }
-
-    /// The predictions for one object at each step, or at an evenly spread selection of many steps.
-    fn predict_some(&self, object: usize, wanted: SurfaceOptions) -> Vec<Predicted> {
+    /// The predictions for one object at each step, or at a selection of many steps.
+    fn predict_some(&self, object: usize, wanted: SurfaceOptions) -> ObjectForecast {
         let (object, placed_object) = (&self.scene.objects()[object], &self.objects[object]);
         let steps = self.scene.steps().len();
-        let looked_at = steps.min(STEPS_LOOKED_AT);
-        let triangles = (TRIANGLES_LOOKED_AT / looked_at).max(MIN_LOOKED_AT);
+        let bounds = placed_object.bounds();
+        let examined = examined_steps(steps, self.objects.len(), |step| {
+            let view = self.view(object, step).expect("a step of the scene");
+            bounds.map_or(0.0, |(low, high)| {
+                let observer = view.observer_rest();
+                observer.distance(observer.clamp(low, high))
+            })
+        });
+        let triangles = (TRIANGLES_LOOKED_AT / examined.len()).max(MIN_LOOKED_AT);
         let sketch = (wanted.subdivide.then(|| placed_object.sketch(triangles))).flatten();
         let (placed_object, weights) = match &sketch {
             Some((sketch, weights)) => (sketch, weights.clone()),
             None => (placed_object, vec![1.0; placed_object.parts.len()]),
         };
-        let predict_at = |index: usize| {
-            let step = index * (steps - 1) / (looked_at - 1).max(1);
-            let plan = self.plan(object, placed_object, step, wanted);
-            predict(plan, wanted, &weights)
-        };
-        (0..looked_at).map(predict_at).collect()
+        ObjectForecast::new(&examined, |step| {
+            predict(
+                self.plan(object, placed_object, step, wanted),
+                wanted,
+                &weights,
+            )
+        })
     }
 }
 

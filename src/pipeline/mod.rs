@@ -4,6 +4,7 @@ mod budget;
 mod certifying;
 mod error;
 mod facts;
+mod forecast;
 mod limits;
 mod making;
 mod mapped_mesh;

@@ -1,6 +1,6 @@
 //! Objects in their rest frames, and the shapes of those that have one.
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use crate::material::Part;
@@ -58,6 +58,15 @@ impl PlacedObject {
         self.granted
             .as_ref()
             .map_or(u64::MAX, |granted| granted.together)
+    }
+
+    /// Low and high corner of the box around all parts, in the rest frame; `None` if there are no vertices.
+    pub(super) fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        let boxes = self
+            .parts
+            .iter()
+            .filter_map(|(_, part)| part.mesh().bounds());
+        boxes.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
     }
 
     /// A sample of about `most` triangles, and for each part how many triangles each sampled one stands for. `None` if

@@ -29,6 +29,7 @@ mod flights {
     mod diagram;
     mod exact;
     mod known_answers;
+    mod predictions;
     mod seen;
 }
 
