@@ -55,18 +55,40 @@ PICTURES = [
     ("plane", PLANE, f"--view outside --size 480x360 --fov 20 --look -0.5,-0.35,-1 {GUIDES}"),
     ("snapshot_seen", None, "--example snapshot --size 480x360 --fov 22"),
     ("snapshot_shape", None, f"--example snapshot --view outside --ghost rest --size 480x360 --marker 0 --scale-bar"),
+    ("figure_6", None, "--example flight --size 480x300 --beta 0 --steps 0"),
+    ("figure_7", None, "--example flight --size 480x300 --steps 0"),
+    ("figure_8", None, "--example flight --size 480x300 --steps 2.1"),
+    ("figure_9", None, "--example flight --size 480x300 --steps 3.7"),
+    ("takeoff", None, "--example takeoff --sheet --size 240x180"),
+]
+
+# Minkowski diagrams.
+DIAGRAMS = [
+    ("flight_diagram", "--example flight --at 0,2.1,3.7 --point ring1 --point ring2 --diagram-size 640x640"),
 ]
 
 
 def draw(binary: str, name: str, scene: dict | None, flags: str) -> None:
     """Writes gallery/NAME.png."""
     source = [] if scene is None else ["-"]
-    command = [binary, "render", *source, *shlex.split(flags), "-q", "-o", str(GALLERY / f"{name}.png")]
+    run([binary, "render", *source, *shlex.split(flags), "-q", "-o", str(GALLERY / f"{name}.png")], json.dumps(scene))
+
+
+def draw_diagram(binary: str, name: str, flags: str) -> None:
+    """Writes gallery/NAME.png."""
+    run([binary, "flight", *shlex.split(flags), "-q", "--diagram", str(GALLERY / f"{name}.png")])
+
+
+def run(command: list[str], stdin: str = "") -> None:
     print(shlex.join(command))
-    subprocess.run(command, input=json.dumps(scene), text=True, check=True)
+    subprocess.run(command, input=stdin, text=True, check=True, stdout=subprocess.DEVNULL)
 
 
 if __name__ == "__main__":
+    binary, *names = sys.argv[1:]
     for picture in PICTURES:
-        if picture[0] in sys.argv[2:] or len(sys.argv) == 2:
-            draw(sys.argv[1], *picture)
+        if picture[0] in names or not names:
+            draw(binary, *picture)
+    for diagram in DIAGRAMS:
+        if diagram[0] in names or not names:
+            draw_diagram(binary, *diagram)

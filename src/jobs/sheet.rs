@@ -24,7 +24,7 @@ pub(super) fn draw_sheet(views: &mut Views, from: Option<DVec3>) -> Result<Pictu
         let mut above = views.observer(step, fov)?;
         label(
             &mut above,
-            &format!("τ = {}", scene.steps()[step]),
+            &format!("τ = {}", short(scene.steps()[step])),
             background,
         );
         let below = views.outside(step..step + 1, camera)?;
@@ -33,6 +33,14 @@ pub(super) fn draw_sheet(views: &mut Views, from: Option<DVec3>) -> Result<Pictu
         sheet.paste(&below, x, size.height() + GAP);
     }
     Ok(sheet)
+}
+
+/// A number in at most six digits, if it has more.
+fn short(number: f64) -> f64 {
+    match number.to_string().len() {
+        ..=8 => number,
+        _ => format!("{number:.5e}").parse().unwrap_or(number),
+    }
 }
 
 /// The colour between the views of a sheet: halfway from the background to grey.
