@@ -43,7 +43,12 @@ impl ObjectForecast {
         }
         for pair in self.0.windows(2) {
             let [(from, a), (to, b)] = [pair[0], pair[1]];
-            let half_of_those_between = 0.5 * (to - from - 1) as f64;
+            let between = to - from - 1;
+            if between == 0 {
+                // Nothing times a number of triangles that is beyond f64 would not be a number.
+                continue;
+            }
+            let half_of_those_between = 0.5 * between as f64;
             sum.triangles += half_of_those_between * (a.triangles + b.triangles);
             sum.before += half_of_those_between * (a.before + b.before);
         }

@@ -57,6 +57,6 @@ pub enum InvalidScene {
     #[error("flight[{0}]: {1}")]
     Segment(usize, SegmentError),
     /// A flight that is not possible.
-    #[error("the observer's flight: {0}")]
+    #[error(transparent)]
     Flight(#[from] FlightError),
 }

@@ -168,6 +168,7 @@ mod tests {
 
     use super::super::Source;
     use super::*;
+    use crate::spacetime::{Integrator, Segment};
 
     const OBJECTS: &str =
         r#""objects": [ { "name": "s", "shape": { "sphere": { "radius": 1 } } } ]"#;
@@ -208,6 +209,31 @@ mod tests {
     }
 
     #[test]
+    fn a_flight_is_read_as_written() {
+        let scene = Scene::from_json(&format!(
+            r#"{{ "units": {{ "length_m": 299792458 }}, "observer": {{
+                "orientation": {{ "look": [2, 0, 0], "up": [1, 3, 0] }}, "integrator": {{ "euler": 0.5 }}, "flight": [
+                {{ "proper_time": 2, "acceleration": [1, 2, 3], "turn_rate": [4, 5, 6] }},
+                {{ "proper_time": 1, "acceleration_g": [0, 0, -2] }},
+                {{ "proper_time": 3, "steer": "coordinated" }} ] }}, {OBJECTS} }}"#
+        ))
+        .unwrap();
+        let observer = scene.observer();
+        let ahead = observer.orientation.get() * DVec3::NEG_Z;
+        assert!(ahead.distance(DVec3::X) < 4e-16, "{ahead}");
+        assert!((observer.orientation.get() * DVec3::Y).distance(DVec3::Y) < 4e-16);
+        let g = scene.units().unwrap().gravity();
+        let expected = [
+            Segment::free(2.0, DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0)),
+            Segment::free(1.0, DVec3::NEG_Z * (2.0 * g), DVec3::ZERO),
+            Segment::coordinated(3.0, DVec3::ZERO),
+        ];
+        assert_eq!(observer.flight, expected.map(Result::unwrap));
+        assert_eq!(observer.integrator, Integrator::euler(0.5).unwrap());
+        assert_eq!(scene.flight().proper_time(), 6.0);
+    }
+
+    #[test]
     fn a_speed_may_be_written_in_five_ways() {
         for velocity in [
             "[0, 0, -0.6]",
@@ -225,10 +251,15 @@ mod tests {
         }
     }
 
+    /// A scene whose observer has this flight, on the second line.
+    fn flying(flight: &str) -> String {
+        format!("{{ \"observer\": {{\n\"flight\": {flight} }}, {OBJECTS} }}")
+    }
+
     #[test]
     fn mistakes_are_told_with_line_column_place_and_expectation() {
         // text, line, place, words of the message
-        let cases: [(String, usize, &str, &str); 30] = [
+        let cases: [(String, usize, &str, &str); 43] = [
             ("{".into(), 1, "", "the text ends in the middle of an object"),
             ("".into(), 1, "", "the text ends"),
             ("\u{feff}{".into(), 1, "", "the text ends"),
@@ -243,6 +274,19 @@ mod tests {
             (r#"{ "objects": [ { "name": "a", "shape": { "ball": { "radius": 1 } } } ] }"#.into(), 1, "objects[0].shape", "unknown shape `ball`, expected one of sphere, box"),
             (r#"{ "objects": [ { "name": "a", "file": "" } ] }"#.into(), 1, "objects[0].file", "the file name is empty"),
 
+            (flying(r#"[{ "proper_time": 0 }]"#), 2, "observer.flight[0]", "the proper time is 0, expected a finite duration > 0"),
+            (flying(r#"[{ "proper_time": 1 }, { "proper_time": 1, "acceleration": [1, 2] }]"#), 2, "observer.flight[1].acceleration", "found a list of length 2, expected a list"),
+            (flying(r#"[{ "acceleration": [1, 0, 0] }]"#), 2, "observer.flight[0]", "missing key `proper_time`"),
+            (flying(r#"[{ "proper_time": 1, "thrust": 3 }]"#), 2, "observer.flight[0].thrust", "unknown key `thrust`"),
+            (flying(r#"[{ "proper_time": 1, "steer": "left" }]"#), 2, "observer.flight[0].steer", "expected `free` or `coordinated`"),
+            (flying(r#"[{ "proper_time": 1, "steer": "coordinated", "turn_rate": [0, 1, 0] }]"#), 2, "observer.flight[0]", "expected one of them"),
+            (flying(r#"[{ "proper_time": 1, "acceleration": [0, 0, 1], "acceleration_g": [0, 0, 1] }]"#), 2, "observer.flight[0]", "expected one of them"),
+            (flying(r#"[[1, [0, 0, 0]]]"#), 2, "observer.flight[0]", "expected a segment like {"),
+            (flying("{}"), 2, "observer.flight", "found an object, expected a list"),
+            (flying(r#"[{ "proper_time": 400, "acceleration": [1, 0, 0] }]"#), 2, "observer", "flight[0] ends at rapidity"),
+            (flying(r#"[{ "proper_time": 1, "acceleration_g": [1, 0, 0] }]"#), 2, "", "flight[0] has \"acceleration_g\", which needs \"units\""),
+            (format!("{{ \"observer\": {{\n\"integrator\": {{ \"rk4\": -1 }} }}, {OBJECTS} }}"), 2, "observer.integrator", "the step is -1, expected a finite proper time > 0"),
+            (format!("{{ \"observer\": {{\n\"orientation\": {{ \"look\": [0, 2, 0] }} }}, {OBJECTS} }}"), 2, "observer.orientation", "not along one line"),
             ("[]".into(), 1, "", "expected a scene like"),
             (format!("{{ {OBJECTS} }} x"), 1, "", "more text after the end"),
             (r#"{ "objects": [] }"#.into(), 1, "", "at least one"),

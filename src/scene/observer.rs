@@ -1,7 +1,8 @@
 //! The observer of a scene.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
 
 use super::flight::{self, IntegratorForm, SegmentForm};
 use super::forms::{self, Keyed, VelocityForm};
@@ -57,7 +58,7 @@ impl Observer {
 }
 
 /// The observer: the event of the observation, a velocity, axes, and a flight from there.
-#[derive(Default, Deserialize, JsonSchema)]
+#[derive(Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[schemars(rename = "Observer")]
 pub(super) struct ObserverFields {
@@ -100,6 +101,18 @@ impl ObserverFields {
             marker: self.marker,
         })
     }
+}
+
+/// Reads an observer, and checks there its flight, unless that needs units which may come later.
+pub(super) fn observer<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<ObserverFields, D::Error> {
+    let fields: ObserverFields = forms::from_object(deserializer)?;
+    if let Ok(observer) = fields.clone().observer(None) {
+        let flight = observer.to_flight().map_err(InvalidScene::from);
+        flight.map_err(D::Error::custom)?;
+    }
+    Ok(fields)
 }
 
 impl Keyed for ObserverFields {

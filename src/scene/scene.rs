@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::forms::{self, FromObject, Keyed, Steps};
-use super::observer::ObserverFields;
+use super::forms::{FromObject, Keyed, Steps};
+use super::observer::{self, ObserverFields};
 use super::{Attributes, InvalidScene, Object, Observer, Tolerance, Units};
 use crate::spacetime::{Flight, Moment};
 
@@ -168,7 +168,7 @@ struct SceneFields {
     #[schemars(with = "Option<Units>")]
     units: Option<FromObject<Units>>,
     /// The observer; at rest at the origin at time 0 if absent.
-    #[serde(default, deserialize_with = "forms::from_object")]
+    #[serde(default, deserialize_with = "observer::observer")]
     #[schemars(with = "ObserverFields")]
     observer: ObserverFields,
     /// The objects.

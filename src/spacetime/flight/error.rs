@@ -32,7 +32,7 @@ pub enum SegmentError {
 pub enum FlightError {
     /// A segment that ends too near the speed of light.
     #[error(
-        "segment {segment} ends at rapidity {rapidity}, expected at most {MAX_RAPIDITY} (1 - beta = 2e-304)"
+        "flight[{segment}] ends at rapidity {rapidity}, expected at most {MAX_RAPIDITY} (1 - beta = 2e-304)"
     )]
     TooFast {
         /// Which segment, counted from 0.
@@ -42,7 +42,7 @@ pub enum FlightError {
     },
     /// Without speed a coordinated turn has no turn rate.
     #[error(
-        "segment {segment} is steered \"coordinated\" and comes to rest while it turns, where its turn rate would be \
+        "flight[{segment}] is steered \"coordinated\" and comes to rest while it turns, where its turn rate would be \
          infinite; expected a segment that stays in motion, or \"free\""
     )]
     StopsInTurn {
@@ -51,7 +51,7 @@ pub enum FlightError {
     },
     /// Too many turns at a changing speed.
     #[error(
-        "segment {segment} is steered \"coordinated\" and turns by {turn:e} radians while its speed changes, expected at \
+        "flight[{segment}] is steered \"coordinated\" and turns by {turn:e} radians while its speed changes, expected at \
          most {limit:e}",
         limit = super::coordinated::MAX_TURN_AT_CHANGING_SPEED
     )]

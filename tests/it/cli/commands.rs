@@ -30,7 +30,8 @@ fn every_built_in_scene_exports() {
         .lines()
         .filter_map(|line| line.split_whitespace().next())
         .collect();
-    assert_eq!(names, ["sphere", "cube", "lattice", "street", "snapshot"]);
+    let expected = "sphere, cube, lattice, street, snapshot, flight, takeoff, turn, orbit";
+    assert_eq!(names.join(", "), expected);
     for name in names {
         workplace
             .run(&format!("export --example {name} -o {name}.glb"))
@@ -48,7 +49,7 @@ fn every_built_in_scene_exports() {
     }
     workplace
         .run("example nosuch")
-        .error(&["\"nosuch\"", "sphere, cube, lattice, street, snapshot"]);
+        .error(&["\"nosuch\"", expected]);
     workplace
         .run("export --example nosuch")
         .error(&["\"nosuch\""]);
@@ -58,6 +59,10 @@ fn every_built_in_scene_exports() {
 fn the_readmes_commands_work() {
     let workplace = Workplace::new();
     workplace.write("bunny.obj", SQUARE);
+    workplace.write(
+        "takeoff.json",
+        r#"[{ "proper_time": 6, "acceleration": [0, 0, -0.5] }]"#,
+    );
     let readme = include_str!("../../../README.md");
     let blocks = readme
         .split("```sh\n")

@@ -1,7 +1,7 @@
 //! The flags of the binary: each reaches its parameter; what cannot be is refused in words that help.
 
 use crate::common::command::{Workplace, node_names};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 #[test]
 fn every_flag_reaches_its_parameter() {
@@ -33,6 +33,17 @@ fn every_flag_reaches_its_parameter() {
             &[1.0, -2.0, 3.5],
         ),
         ("--observer -1,2,3", "observer_position", &[-1.0, 2.0, 3.0]),
+        (
+            "--velocity 0,-0.6,0",
+            "observer_direction",
+            &[0.0, -1.0, 0.0],
+        ),
+        ("--velocity -0.6,0,0", "observer_beta", &[0.6]),
+        (
+            "--orientation 0,0.6,0,0.8",
+            "observer_orientation",
+            &[0.0, 0.6, 0.0, 0.8],
+        ),
         ("--time -4", "observer_time", &[-4.0]),
         ("--steps 1,2.5", "steps", &[1.0, 2.5]),
         ("--steps -1", "steps", &[-1.0]),
@@ -67,9 +78,110 @@ fn every_flag_reaches_its_parameter() {
     assert_eq!(node_names(&workplace.read("out.glb")), ["sphere"]);
 }
 
+/// A flight of a file, as a list and as an object, in g of its own units or of the scene's.
+#[test]
+fn flights_come_from_files() {
+    let workplace = Workplace::with_ball();
+    let second = r#""units": { "length_m": 299792458 }"#;
+    let in_g = r#"[{ "proper_time": 2, "acceleration_g": [0, 0, -3] }]"#;
+    let gravity = 9.80665 / 299_792_458.0;
+    workplace.write(
+        "list.json",
+        r#"[{ "proper_time": 2, "acceleration": [0, 0, -0.5] }]"#,
+    );
+    workplace.write("g.json", in_g);
+    workplace.write(
+        "object.json",
+        format!(r#"{{ "flight": {in_g}, "integrator": {{ "rk4": 0.125 }}, {second} }}"#),
+    );
+    for (flags, acceleration, integrator) in [
+        ("--flight list.json", -0.5, Value::Null),
+        (
+            "--flight object.json",
+            -3.0 * gravity,
+            json!({ "rk4": 0.125 }),
+        ),
+        (
+            "--flight list.json --integrator euler:0.25",
+            -0.5,
+            json!({ "euler": 0.25 }),
+        ),
+        (
+            "--flight object.json --integrator exact",
+            -3.0 * gravity,
+            Value::Null,
+        ),
+    ] {
+        let run = workplace.run(&format!(
+            "export ball.json -o out.glb --report report.json --steps 1,4 {flags}"
+        ));
+        let run = run.success();
+        let report = workplace.read_json("report.json");
+        let segment = &report["scene"]["observer_flight"][0];
+        let found = segment["acceleration"][2].as_f64().expect("a number");
+        assert!((found / acceleration - 1.0).abs() < 1e-15, "{run}");
+        assert_eq!(segment["steer"], "free");
+        assert_eq!(report["scene"]["observer_integrator"], integrator, "{run}");
+        // Where the observer is at each step.
+        for object in report["objects"].as_array().expect("a list") {
+            assert_eq!(object["observer"]["proper_time"], object["proper_time"]);
+        }
+    }
+    workplace
+        .run("export ball.json --flight g.json -o out.glb")
+        .error(&["g.json", "line 1", "flight[0]", "acceleration_g", "units"]);
+    workplace.write("out.json", in_g);
+    workplace
+        .run("export ball.json --flight list.json --report list.json -o out.glb")
+        .error(&["list.json"]);
+    for (text, words) in [
+        ("[{]", "line 1, column 3"),
+        (
+            "[{ \"proper_time\": 0 }]",
+            "the proper time is 0, expected a finite duration > 0",
+        ),
+        ("{ \"flights\": [] }", "unknown key `flights`"),
+        ("7", "expected a list of segments"),
+        ("", "the text ends"),
+    ] {
+        workplace.write("wrong.json", text);
+        workplace
+            .run("export ball.json --flight wrong.json -o out.glb")
+            .error(&["wrong.json", words]);
+    }
+    workplace
+        .run("export ball.json --flight nosuch.json")
+        .error(&["nosuch.json"]);
+}
+
 #[test]
 fn impossible_flags_are_refused_by_name() {
     let workplace = Workplace::with_ball();
+    for (flags, words) in [
+        ("--velocity 1,0,0", "below the speed of light"),
+        ("--velocity 1,0", "expected 3"),
+        ("--velocity 0.5,0,0 --beta 0.5", "cannot be used with"),
+        (
+            "--velocity 0.5,0,0 --direction 1,0,0",
+            "cannot be used with",
+        ),
+        ("--orientation 0,0,0,2", "expected a unit quaternion"),
+        ("--orientation 1,0,0", "expected 4: X,Y,Z,W"),
+        (
+            "--integrator rk5:1",
+            "expected exact, euler:STEP or rk4:STEP",
+        ),
+        (
+            "--integrator euler:0",
+            "the step is 0, expected a finite proper time > 0",
+        ),
+        (
+            "--integrator euler",
+            "expected exact, euler:STEP or rk4:STEP",
+        ),
+    ] {
+        workplace.run(&format!("export {flags}")).error(&[words]);
+    }
     workplace
         .run("export --beta 1")
         .error(&["--beta", "beta is 1, expected 0 <= beta < 1"]);

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::common::command::{Run, Workplace};
 
-const FLIGHT: &str = r#"{ "title": "Past a sphere", "observer": { "velocity": { "beta": 0.95 }, "flight": [
+const FLIGHT: &str = r#"{ "title": "Past a sphere", "observer": { "velocity": { "rapidity": 1.8317808230648227 }, "flight": [
     { "proper_time": 2.1, "acceleration": [0, 0, -0.26085503293665] },
     { "proper_time": 1.6, "acceleration": [0, 0, -0.32718303025942] } ] },
   "steps": [0, 2.1, 3.7],
