@@ -113,6 +113,42 @@ class Moment:
         u = four_velocity(spec.get("velocity"))
         return cls([mpf(spec.get("time", 0)), *place], u, IDENTITY)
 
+    @classmethod
+    def along(cls, scene, proper_time):
+        """The observer of a scene after that much proper time of its flight, axes and all."""
+        spec = scene.get("observer", {})
+        moment = cls.of_scene(scene)
+        if "orientation" in spec:
+            moment = moment.turned(spec["orientation"])
+        left = mpf(proper_time)
+        for segment in spec.get("flight", []) if left > 0 else []:
+            duration = min(left, mpf(segment["proper_time"]))
+            moment = moment._flown(segment, duration)
+            left -= duration
+        return moment.after(left)
+
+    def _flown(self, segment, proper_time):
+        """The same observer after a part of a segment: the matrix exponential of [[K, e_0], [0, 0]]."""
+        a = [mpf(x) for x in segment.get("acceleration", [0, 0, 0])]
+        w = [mpf(x) for x in segment.get("turn_rate", [0, 0, 0])]
+        if segment.get("steer") == "coordinated":
+            ahead = apply(self.turn, unit(self.u[1:]))
+            assert abs(dot(ahead, a)) < mpf(10) ** -50, "this oracle turns at constant speed only"
+            w = [x * self.u[0] / norm(self.u[1:]) for x in cross(ahead, a)]
+        generator = mp.matrix([
+            [0, a[0], a[1], a[2], 1],
+            [a[0], 0, -w[2], w[1], 0],
+            [a[1], w[2], 0, -w[0], 0],
+            [a[2], -w[1], w[0], 0, 0],
+            [0, 0, 0, 0, 0],
+        ])
+        tetrad = mp.matrix([[*row, e] for row, e in zip(self.observer_to_scene(), self.event, strict=True)])
+        flown = tetrad * mp.expm(generator * proper_time)
+        u, event = ([flown[i, k] for i in range(4)] for k in (0, 4))
+        # The axes before the turn are those of the pure boost: the boost back leaves the turn.
+        axes = [apply(boost(u), [flown[i, k] for i in range(4)])[1:] for k in (1, 2, 3)]
+        return Moment(event, u, axes)
+
     def after(self, proper_time):
         """The same observer, coasting, after that much proper time."""
         event = [e + mpf(proper_time) * u for e, u in zip(self.event, self.u, strict=True)]

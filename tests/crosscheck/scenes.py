@@ -49,6 +49,43 @@ TORUS = {
     "tolerance": {"relative": 0.02},
 }
 
+# The observer flies, its axes turned: every kind of segment, before, within and after them.
+FLIGHT = {
+    "observer": {
+        "time": 0.5,
+        "position": [1, 0, 2],
+        "velocity": {"beta": 0.6, "direction": [0, 0, -1]},
+        "orientation": [0.1, 0.7, -0.1, 0.7],
+        "flight": [
+            {"proper_time": 1.5, "acceleration": [0.5, 0.2, 0], "turn_rate": [0, 0.1, 0.7]},
+            {"proper_time": 1, "acceleration": [0, 0, -1], "turn_rate": [0, 1, 0]},
+            {"proper_time": 0.5},
+            {"proper_time": 2, "acceleration": [0.3, -0.4, 0.1]},
+        ],
+    },
+    "objects": [
+        {
+            "name": "cube",
+            "shape": {"box": {"size": [1, 2, 0.5], "resolution": 4}},
+            "position": [-3, 2, 1],
+            "velocity": {"gamma": 2, "direction": [1, -2, 2]},
+        }
+    ],
+    "steps": [-1, 0, 0.75, 2, 2.75, 4, 7],
+}
+
+# A coordinated turn, a full circle at 0.6 c.
+ORBIT = {
+    "observer": {
+        "velocity": {"beta": 0.6, "direction": [0, 0, -1]},
+        "flight": [{"proper_time": 8.377580409572782, "acceleration": [-0.5625, 0, 0], "steer": "coordinated"}],
+    },
+    "objects": [
+        {"name": "cube", "shape": {"box": {"size": [1, 2, 0.5], "resolution": 4}}, "position": [-1, 3, 0]}
+    ],
+    "steps": [0, 2, 5, 8.377580409572782],
+}
+
 # Several objects at once, one of which recedes from the other.
 SEVERAL = {
     "title": "several objects",

@@ -165,7 +165,7 @@ def view_at(scene, step):
     """The oracle's view of the only object."""
     (spec,) = scene["objects"]
     proper_time = scene.get("steps", [0])[step]
-    return View(Moment.of_scene(scene).after(proper_time), Source.of_object(spec))
+    return View(Moment.along(scene, proper_time), Source.of_object(spec))
 
 
 def measure(scene, surface, path, unit, step=0):

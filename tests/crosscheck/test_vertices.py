@@ -15,11 +15,14 @@ from mpmath import mpf
 import glb
 import ply
 from oracle import Moment, Source, View, norm
-from scenes import CUBE, SPHERE, TORUS, write_airplane, write_obj
+from scenes import CUBE, FLIGHT, ORBIT, SPHERE, TORUS, write_airplane, write_obj
 
 F32 = mpf(2) ** -24
 F64 = mpf(2) ** -53
 ROUNDINGS = 16
+
+SHAPES = [SPHERE, CUBE, TORUS, FLIGHT, ORBIT]
+SHAPE_NAMES = ["sphere", "cube", "torus", "flight", "orbit"]
 
 
 def steps_of(scene):
@@ -32,8 +35,7 @@ def steps_of(scene):
 def views(scene):
     """The oracle's view of the scene's only object at each step."""
     (spec,) = scene["objects"]
-    observer = Moment.of_scene(scene)
-    return [View(observer.after(step), Source.of_object(spec)) for step in steps_of(scene)]
+    return [View(Moment.along(scene, step), Source.of_object(spec)) for step in steps_of(scene)]
 
 
 def nodes_of_step(document, step):
@@ -55,7 +57,7 @@ def assert_seen(view, offsets, nodes):
                 assert abs(found - expected) <= limit, f"{node.name}: {offset} {found} {expected}"
 
 
-@pytest.mark.parametrize("scene", [SPHERE, CUBE, TORUS], ids=["sphere", "cube", "torus"])
+@pytest.mark.parametrize("scene", SHAPES, ids=SHAPE_NAMES)
 def test_shapes_as_glb(scene, export, placed_vertices):
     offsets = placed_vertices(scene["objects"][0]).positions.tolist()
     document = glb.Gltf(export(scene, "--no-subdivide"))
@@ -63,7 +65,7 @@ def test_shapes_as_glb(scene, export, placed_vertices):
         assert_seen(view, offsets, nodes_of_step(document, step))
 
 
-@pytest.mark.parametrize("scene", [SPHERE, CUBE, TORUS], ids=["sphere", "cube", "torus"])
+@pytest.mark.parametrize("scene", SHAPES, ids=SHAPE_NAMES)
 def test_shapes_as_ply_keep_double_precision(scene, export, placed_vertices):
     """All steps are one after the other in one mesh; quality is the Doppler factor, in f32."""
     offsets = placed_vertices(scene["objects"][0]).positions.tolist()
