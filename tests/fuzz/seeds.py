@@ -399,6 +399,22 @@ def scenes():
             ],
         }
     )
+    yield "flight.json", json.dumps(
+        {
+            "units": {"length_m": 299792458},
+            "observer": {
+                "orientation": {"look": [1, 0, 0], "up": [0, 1, 0]},
+                "flight": [
+                    {"proper_time": 1, "acceleration": [1, 2, 3], "turn_rate": [4, 5, 6], "steer": "free"},
+                    {"proper_time": 2, "acceleration_g": [0, 0, -1]},
+                    {"proper_time": 3, "acceleration": [0.1, 0, -0.1], "steer": "coordinated"},
+                ],
+                "integrator": {"rk4": 0.1},
+            },
+            "steps": [0, 3, 7],
+            "objects": [{"name": "a", "shape": {"sphere": {"radius": 1}}}],
+        }
+    )
     yield "most_steps.json", one + sphere + '}],"steps":{"from":0,"to":1,"count":100000}}'
     yield "too_many_steps.json", one + sphere + '}],"steps":{"from":0,"to":1,"count":18446744073709551615}}'
     yield "even_overflow.json", one + sphere + '}],"steps":{"from":-1.7e308,"to":1.7e308,"count":3}}'

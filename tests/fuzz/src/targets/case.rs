@@ -86,9 +86,20 @@ impl Case {
         if !attributes.is_empty() {
             scene["attributes"] = json!(attributes);
         }
+        let mesh = mesh(given);
+        // Last, so that what bytes stand for stays as it was before there were flights.
+        let flight: Vec<_> = (0..given.choice(4)).map(|_| segment(given)).collect();
+        if !flight.is_empty() {
+            scene["observer"]["flight"] = flight.into();
+            scene["observer"]["integrator"] = match given.choice(4) {
+                0 => json!({ "euler": given.length() }),
+                1 => json!({ "rk4": given.length() }),
+                _ => json!("exact"),
+            };
+        }
         Self {
             scene,
-            mesh: mesh(given),
+            mesh,
             format,
             animate,
             subdivide,
@@ -182,6 +193,17 @@ fn tolerance(given: &mut Given<'_>) -> Option<Value> {
         0 => None,
         kind => Some(json!({ unit[usize::from(kind) - 1]: given.length() })),
     }
+}
+
+/// A segment of a flight.
+fn segment(given: &mut Given<'_>) -> Value {
+    let mut segment = json!({ "proper_time": given.length(), "acceleration": given.vector() });
+    match given.choice(4) {
+        0 => segment["turn_rate"] = json!(given.vector()),
+        1 => segment["steer"] = "coordinated".into(),
+        _ => {}
+    }
+    segment
 }
 
 fn object(given: &mut Given<'_>, index: u8, observer: &Value) -> Value {
