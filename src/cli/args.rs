@@ -68,7 +68,8 @@ pub(super) struct ObserverArgs {
     #[arg(long, value_name = "X,Y,Z,W", value_parser = quaternion, allow_hyphen_values = true)]
     orientation: Option<Rotation>,
     /// What the observer does after the observation: a JSON file with a list of segments, or an object like { "flight": [{
-    /// "proper_time": 2, "acceleration": [0, 0, -0.5] }] }, as "flight" and "integrator" of an observer in a scene
+    /// "proper_time": 2, "acceleration": [0, 0, -0.5] }] }, as "flight" and "integrator" of an observer in a scene;
+    /// with "units" if accelerations are in g and the scene has none. The scene's integrator stays unless the file has one
     #[arg(long, value_name = "FILE")]
     flight: Option<PathBuf>,
     /// How the flight is computed: exact, or by Euler's method or that of Runge and Kutta with steps of so much proper time
@@ -120,10 +121,15 @@ impl ObserverArgs {
         if let Some(orientation) = self.orientation {
             observer.orientation = orientation;
         }
+        let mut scene = scene;
         if let Some(path) = &self.flight {
             let plan = read_flight(path, scene.units())?;
             observer.flight = plan.segments;
             observer.integrator = plan.integrator.unwrap_or(observer.integrator);
+            scene = match plan.units {
+                Some(units) => scene.with_units(units),
+                None => scene,
+            };
         }
         if let Some(integrator) = self.integrator {
             observer.integrator = integrator;
@@ -142,7 +148,12 @@ impl ObserverArgs {
                 })?),
             };
         }
-        let scene = scene.with_observer(observer)?;
+        let place = || match (&self.flight, self.integrator) {
+            (Some(path), _) => path.display().to_string(),
+            (None, Some(_)) => "--integrator".to_owned(),
+            (None, None) => "the observer's flight".to_owned(),
+        };
+        let scene = scene.with_observer(observer).with_context(place)?;
         match &self.steps {
             Some(Steps(steps)) => Ok(scene.with_steps(steps.clone()).context("--steps")?),
             None => Ok(scene),

@@ -24,7 +24,8 @@ const ROWS: usize = 11;
 ///
 /// One row for each step of the scene; if the scene has a flight and no steps but the observation itself, 11 rows at even
 /// proper times over the flight. All numbers are of the scene frame, in scene units, the speed of light being 1; times in
-/// seconds and accelerations in g are added where the scene says what its units are.
+/// seconds and accelerations in g are added where the scene says what its units are. Where a segment of the flight ends, the
+/// acceleration is that of the next one, or none.
 ///
 /// A table goes to stdout.
 #[derive(Debug, clap::Args)]
@@ -47,7 +48,8 @@ pub(super) struct FlightArgs {
 struct DiagramArgs {
     /// Draw a Minkowski diagram, time t upward and one direction of space to the right, both in scene units at one scale: the
     /// observer's worldline with ticks of proper time, worldlines of objects, and for each time of --at the light cone, the
-    /// observer's own axes, and the events at which the light that is seen was emitted: .png or .svg
+    /// observer's own axes, and the events at which the light that is seen was emitted; a green square, on the own axis of
+    /// space, is where that is seen: .png or .svg
     #[arg(long, value_name = "FILE")]
     diagram: Option<PathBuf>,
     /// Proper times of the observer, in scene units, with light cone, own axes and emission events
@@ -59,7 +61,7 @@ struct DiagramArgs {
     #[arg(long, value_name = "OBJECT[:X,Y,Z]", value_parser = point, requires = "diagram")]
     point: Vec<DiagramPoint>,
     /// Direction of space in the diagram, in the scene frame, a vector of any length; what is beside the plane of this
-    /// direction and time is hollow or dashed [default: from the observer's first place in the diagram to the farthest one;
+    /// direction and time through the observer at proper time 0 is hollow or dashed [default: from the observer's first place in the diagram to the farthest one;
     /// if the observer stays, to the farthest emission event]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, requires = "diagram")]
     plane: Option<DVec3>,
@@ -108,7 +110,7 @@ pub(super) fn run(args: &FlightArgs) -> anyhow::Result<()> {
     for moment in &moments {
         ensure!(
             is_finite(moment),
-            "at proper time {:?} the observer is beyond numbers, expected an earlier time or a lower speed",
+            "at proper time {:?} the observer is farther than any number says, expected a time nearer to the flight",
             moment.proper_time
         );
     }

@@ -46,7 +46,7 @@ pub(super) fn table_of(
     writeln!(
         out,
         "scene frame; the unit of length is {} m, the speed of light is 1; g is standard gravity",
-        significant(units.length_m.get())
+        significant(units.length_m())
     )?;
     Ok(())
 }

@@ -57,7 +57,7 @@ pub struct DiagramPoint {
 #[non_exhaustive]
 pub enum DiagramError {
     /// A point of an object that the scene does not have.
-    #[error("the scene has no object \"{0}\", expected one of: {1}")]
+    #[error("the scene has no object \"{0}\", expected one of: {1}; as OBJECT or OBJECT:X,Y,Z")]
     Object(String, String),
     /// The zero vector, or one that is not finite.
     #[error("the direction is {0}, expected a vector other than zero with finite coordinates")]
@@ -66,11 +66,13 @@ pub enum DiagramError {
     #[error("the proper time is {0}, expected a finite number")]
     ProperTime(f64),
     /// The observer gets farther than numbers go.
-    #[error("at proper time {0} the observer is beyond {MAX_COORDINATE:e}, expected nearer events")]
+    #[error(
+        "at proper time {0:?} the observer is farther than {MAX_COORDINATE:e}, too far for a diagram"
+    )]
     ObserverTooFar(f64),
     /// Light comes from farther than numbers go.
     #[error(
-        "at proper time {1} light arrives from \"{0}\" from beyond {MAX_COORDINATE:e}, expected nearer events"
+        "at proper time {1:?} light arrives from \"{0}\" from farther than {MAX_COORDINATE:e}, too far for a diagram"
     )]
     PointTooFar(String, f64),
 }

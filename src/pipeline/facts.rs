@@ -57,6 +57,9 @@ pub struct SceneFacts {
     /// The scene's title.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
+    /// The unit of length in metres, if the scene says what its units are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit_length_m: Option<f64>,
     /// The program that made the file.
     pub generator: &'static str,
     /// Scene time of the observation event.
@@ -125,6 +128,7 @@ impl SceneFacts {
         let observer = scene.observer();
         Self {
             title: scene.title().map(str::to_owned),
+            unit_length_m: scene.units().map(|units| units.length_m()),
             generator: concat!("photosurface ", env!("CARGO_PKG_VERSION")),
             observer_time: observer.time.get(),
             observer_position: observer.position.get().to_array(),

@@ -21,7 +21,7 @@ pub struct MomentFacts {
     pub rapidity: f64,
     /// The observer's own axes x, y, z as four-vectors `[t, x, y, z]`.
     pub axes: [[f64; 4]; 3],
-    /// Proper acceleration, in the observer's own axes.
+    /// Proper acceleration, in the observer's own axes; where a segment ends, that of the next one, or none.
     pub acceleration: [f64; 3],
 }
 

@@ -28,8 +28,10 @@ pub(crate) const VIOLET: RGBColor = RGBColor(0xcc, 0x79, 0xa7);
 /// Of what is not the matter itself.
 pub(crate) const GREY: RGBColor = RGBColor(0x77, 0x77, 0x77);
 
-/// The bitmap backend knows no half-covered pixels: pictures are drawn so many times larger and made smaller.
+/// The bitmap backend knows no half-covered pixels: pictures are drawn so many times larger and made smaller, as far as
+/// the larger picture has no more than [`MAX_FINE_PIXELS`], which is memory.
 const FINER: u32 = 4;
+const MAX_FINE_PIXELS: u64 = 1 << 26;
 
 /// What is smaller has no room for two rows of curves beside their words, what is larger no memory.
 const MIN_SIZE: (u32, u32) = (640, 480);
@@ -104,17 +106,22 @@ pub(crate) fn svg(drawing: &impl Drawing, size: PlotSize) -> Result<String, Plot
         let area = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
         drawn(drawing, &area, 1.0)?;
     }
+    // Names and titles may have characters that XML has not.
+    svg.retain(is_in_xml);
     Ok(svg)
 }
 
 /// A drawing as PNG.
 pub(crate) fn png(drawing: &impl Drawing, size: PlotSize) -> Result<Vec<u8>, PlotError> {
     let PlotSize { width, height } = size;
-    let fine = (FINER * width, FINER * height);
+    let fits =
+        |finer: &u32| u64::from(finer * width) * u64::from(finer * height) <= MAX_FINE_PIXELS;
+    let finer = (1..=FINER).rev().find(fits).unwrap_or(1);
+    let fine = (finer * width, finer * height);
     let mut pixels = RgbImage::new(fine.0, fine.1);
     {
         let area = BitMapBackend::with_buffer(&mut pixels, fine).into_drawing_area();
-        drawn(drawing, &area, f64::from(FINER))?;
+        drawn(drawing, &area, f64::from(finer))?;
     }
     let smooth = resize(&pixels, width, height, FilterType::Triangle);
     let mut png = Cursor::new(vec![]);
@@ -140,6 +147,15 @@ where
         area.present()
     };
     draw().map_err(|error: DrawingAreaErrorKind<B::ErrorType>| PlotError::Draw(Box::new(error)))
+}
+
+/// Whether a character may stand in a document of XML 1.0, section 2.2.
+fn is_in_xml(character: char) -> bool {
+    match character {
+        '\t' | '\n' | '\r' => true,
+        '\u{fffe}' | '\u{ffff}' => false,
+        _ => character >= ' ',
+    }
 }
 
 /// As much of a text as there is room for, in pixels.

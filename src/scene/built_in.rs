@@ -45,7 +45,7 @@ pub const BUILT_IN_SCENES: &[BuiltInScene] = &[
     },
     BuiltInScene {
         name: "takeoff",
-        summary: "constant thrust from rest: what is ahead recedes first, then freezes at the horizon behind",
+        summary: "constant thrust from rest: what is ahead recedes first, then all freezes on the horizon",
         json: include_str!("../../examples/scenes/takeoff.json"),
     },
     BuiltInScene {

@@ -49,8 +49,8 @@ pub enum InvalidScene {
     Step(usize, f64),
     /// An acceleration in g in a scene that does not say what its units are.
     #[error(
-        "flight[{0}] has \"acceleration_g\", which needs \"units\" like {{ \"length_m\": 299792458 }}; or expected \
-         \"acceleration\""
+        "flight[{0}] has \"acceleration_g\", which needs \"units\" like {{ \"length_m\": 299792458 }}; without them \
+         expected \"acceleration\""
     )]
     NoUnits(usize),
     /// An acceleration that is beyond `f64` in units of the scene.

@@ -9,7 +9,7 @@ use serde::de::{Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::forms::{self, FromObject, Keyed};
-use super::{InvalidScene, SceneError, Units, json};
+use super::{InvalidScene, Scene, SceneError, Units, json};
 use crate::spacetime::{Integrator, Segment};
 
 /// A flight by itself, as in a file of its own.
@@ -19,21 +19,45 @@ pub struct FlightPlan {
     pub segments: Vec<Segment>,
     /// How the flight is computed; as the scene says if the file does not.
     pub integrator: Option<Integrator>,
+    /// The units of all numbers, those of the scene if it says what they are.
+    pub units: Option<Units>,
 }
 
 impl FlightPlan {
     /// Reads a flight from JSON text: the list of its segments, or an object like `{ "flight": [...], "integrator":
-    /// "exact" }`. Accelerations in g need units, its own or else `scene_units`.
+    /// "exact" }`. Accelerations in g need units, its own or those of the scene, `scene_units`.
     ///
     /// # Errors
     ///
-    /// Malformed JSON, unknown keys, wrong types, impossible values: line, column, place and what was expected.
+    /// Malformed JSON, unknown keys, wrong types, impossible values, other units than those of the scene: line, column,
+    /// place and what was expected.
     pub fn from_json(text: &str, scene_units: Option<Units>) -> Result<Self, SceneError> {
-        let form: FlightForm = json::read(text, "flight")?;
-        let at_end = |error: InvalidScene| json::at_end(text, error.to_string());
+        let at_end = |message: String| json::at_end(text, message);
+        let form: FlightForm = json::read(text, "flight").map_err(|error| {
+            match Scene::from_json(text) {
+                Ok(_) => at_end(
+                    "this is a scene, expected its flight alone: a list of segments like [{ \"proper_time\": 2, \
+                     \"acceleration\": [0, 0, -0.5] }]"
+                        .to_owned(),
+                ),
+                Err(_) => error,
+            }
+        })?;
+        if let (Some(own), Some(scene)) = (form.units, scene_units)
+            && own != scene
+        {
+            return Err(at_end(format!(
+                "units: length_m is {:?}, expected that of the scene, {:?}, or no units",
+                own.length_m(),
+                scene.length_m()
+            )));
+        }
+        let units = form.units.or(scene_units);
+        let segments = segments(form.flight, units);
         Ok(Self {
-            segments: segments(form.flight, form.units.or(scene_units)).map_err(at_end)?,
+            segments: segments.map_err(|error| at_end(error.to_string()))?,
             integrator: form.integrator,
+            units,
         })
     }
 }
@@ -82,11 +106,23 @@ pub(super) struct SegmentFields {
     steer: Option<Steer>,
 }
 
-#[derive(Clone, Copy, Deserialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, JsonSchema, PartialEq, Eq)]
+#[schemars(rename_all = "lowercase")]
 enum Steer {
     Free,
     Coordinated,
+}
+
+impl<'de> Deserialize<'de> for Steer {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        match String::deserialize(deserializer)?.as_str() {
+            "free" => Ok(Self::Free),
+            "coordinated" => Ok(Self::Coordinated),
+            other => Err(D::Error::custom(format_args!(
+                "found \"{other}\", expected \"free\" or \"coordinated\""
+            ))),
+        }
+    }
 }
 
 impl Keyed for SegmentFields {
@@ -110,7 +146,7 @@ impl<'de> Deserialize<'de> for SegmentForm {
         let acceleration = match (fields.acceleration, fields.acceleration_g) {
             (Some(_), Some(_)) => {
                 return Err(D::Error::custom(
-                    "both \"acceleration\" and \"acceleration_g\", expected one of them",
+                    "found both \"acceleration\" and \"acceleration_g\", expected one of them",
                 ));
             }
             (acceleration, acceleration_g) => acceleration.or(acceleration_g).unwrap_or_default(),
@@ -119,8 +155,8 @@ impl<'de> Deserialize<'de> for SegmentForm {
         let segment = match (fields.steer, fields.turn_rate) {
             (Some(Steer::Coordinated), Some(_)) => {
                 return Err(D::Error::custom(
-                    "\"turn_rate\" in a segment that is steered \"coordinated\", whose turn rate follows from its \
-                     acceleration; expected one of them",
+                    "found \"turn_rate\" beside \"steer\": \"coordinated\", whose turn rate follows from the acceleration; \
+                     expected one of them",
                 ));
             }
             (Some(Steer::Coordinated), None) => Segment::coordinated(proper_time, acceleration),
@@ -239,6 +275,11 @@ pub(super) fn integrator<'de, D: Deserializer<'de>>(
             let integrator = match method.as_str() {
                 "euler" => Integrator::euler(map.next_value()?),
                 "rk4" => Integrator::runge_kutta_4(map.next_value()?),
+                "exact" => {
+                    return Err(A::Error::custom(
+                        "\"exact\" takes no step, expected \"exact\" alone",
+                    ));
+                }
                 _ => {
                     return Err(A::Error::custom(format_args!(
                         "unknown integrator `{method}`, expected \"exact\", {{ \"euler\": STEP }} or {{ \"rk4\": STEP }}"

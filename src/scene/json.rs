@@ -68,7 +68,13 @@ pub(super) fn read<T: DeserializeOwned>(text: &str, kind: &str) -> Result<T, Sce
     let mut deserializer = serde_json::Deserializer::from_str(text);
     let value = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
         let at = error.path().to_string();
-        scene_error(text, &error.into_inner(), &at, kind)
+        let mut error = scene_error(text, &error.into_inner(), &at, kind);
+        if error.message == format!("more text after the end of the {kind}") {
+            error.message =
+                "expected the list to end here: it is too long, or a bracket is missing before"
+                    .to_owned();
+        }
+        error
     })?;
     let end = deserializer.end();
     end.map_err(|error| scene_error(text, &error, ".", kind))?;
@@ -278,7 +284,7 @@ mod tests {
             (flying(r#"[{ "proper_time": 1 }, { "proper_time": 1, "acceleration": [1, 2] }]"#), 2, "observer.flight[1].acceleration", "found a list of length 2, expected a list"),
             (flying(r#"[{ "acceleration": [1, 0, 0] }]"#), 2, "observer.flight[0]", "missing key `proper_time`"),
             (flying(r#"[{ "proper_time": 1, "thrust": 3 }]"#), 2, "observer.flight[0].thrust", "unknown key `thrust`"),
-            (flying(r#"[{ "proper_time": 1, "steer": "left" }]"#), 2, "observer.flight[0].steer", "expected `free` or `coordinated`"),
+            (flying(r#"[{ "proper_time": 1, "steer": "left" }]"#), 2, "observer.flight[0].steer", "expected \"free\" or \"coordinated\""),
             (flying(r#"[{ "proper_time": 1, "steer": "coordinated", "turn_rate": [0, 1, 0] }]"#), 2, "observer.flight[0]", "expected one of them"),
             (flying(r#"[{ "proper_time": 1, "acceleration": [0, 0, 1], "acceleration_g": [0, 0, 1] }]"#), 2, "observer.flight[0]", "expected one of them"),
             (flying(r#"[[1, [0, 0, 0]]]"#), 2, "observer.flight[0]", "expected a segment like {"),

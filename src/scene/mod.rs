@@ -32,6 +32,6 @@ pub use scale::Scale;
 pub use scene::Scene;
 pub use steps::even_steps;
 pub use tolerance::{Tolerance, ToleranceError, Unit};
-pub use units::Units;
+pub use units::{Units, UnitsError};
 
 pub use crate::spacetime::{Rotation, RotationError};

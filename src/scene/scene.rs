@@ -85,6 +85,13 @@ impl Scene {
         Ok(self)
     }
 
+    /// The scene with units that say what its numbers are in everyday units; no number changes.
+    #[must_use]
+    pub fn with_units(mut self, units: Units) -> Self {
+        self.units = Some(units);
+        self
+    }
+
     /// The scene with another tolerance, for all objects that have none of their own.
     #[must_use]
     pub fn with_tolerance(mut self, tolerance: Tolerance) -> Self {

@@ -53,8 +53,8 @@ pub enum StudyError {
     Step(#[from] IntegratorError),
     /// A flight that takes too long by a reference of 30 digits, or leaves its numbers.
     #[error(
-        "the flight is too long for the reference of 30 digits, expected turns and rapidities of less than about 7000 \
-         radians in all and a Lorentz factor below 1e150"
+        "the flight is too long for the reference of 30 digits, expected at most about 10,000 segments, turns and \
+         rapidities of less than about 7000 radians in all, and a Lorentz factor below 1e150"
     )]
     LongFlight,
     /// The caller ended the study.

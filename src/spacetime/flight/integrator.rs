@@ -8,9 +8,10 @@ pub enum Integrator {
     /// By closed forms, to rounding.
     #[default]
     Exact,
-    /// By Euler's method, as Rau, Weiskopf and Ruder do: errors as the step.
+    /// By Euler's method, as Rau, Weiskopf and Ruder do: errors as the step. Nothing says whether the step is short enough.
     Euler(Step),
-    /// By the classical method of Runge and Kutta: errors as the fourth power of the step.
+    /// By the classical method of Runge and Kutta: errors as the fourth power of the step. Nothing says whether the step is
+    /// short enough.
     RungeKutta4(Step),
 }
 

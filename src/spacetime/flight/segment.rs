@@ -17,8 +17,8 @@ pub enum Steering {
         /// The turn rate in the observer's own axes, in radians per unit of proper time, by the right-hand rule.
         turn_rate: DVec3,
     },
-    /// Like an airplane: so that the direction of motion keeps its place in the observer's own axes. At rest there is no
-    /// turn.
+    /// Like an airplane: so that the direction of motion keeps its place in the observer's own axes. At rest, below
+    /// a rapidity of `1e-12`, there is no turn. A turn that comes to rest is an error, as its rate would be infinite.
     Coordinated,
 }
 

@@ -60,7 +60,7 @@ fn the_readmes_commands_work() {
     let workplace = Workplace::new();
     workplace.write("bunny.obj", SQUARE);
     workplace.write(
-        "takeoff.json",
+        "thrust.json",
         r#"[{ "proper_time": 6, "acceleration": [0, 0, -0.5] }]"#,
     );
     let readme = include_str!("../../../README.md");

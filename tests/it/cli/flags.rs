@@ -1,6 +1,6 @@
 //! The flags of the binary: each reaches its parameter; what cannot be is refused in words that help.
 
-use crate::common::command::{Workplace, node_names};
+use crate::common::command::{BALL, Workplace, node_names};
 use serde_json::{Value, json};
 
 #[test]
@@ -130,6 +130,22 @@ fn flights_come_from_files() {
     workplace
         .run("export ball.json --flight g.json -o out.glb")
         .error(&["g.json", "line 1", "flight[0]", "acceleration_g", "units"]);
+    workplace.write(
+        "years.json",
+        BALL.replacen('{', r#"{ "units": { "length_m": 9.4607304725808e15 }, "#, 1),
+    );
+    workplace
+        .run("export years.json --flight object.json -o out.glb")
+        .error(&[
+            "object.json",
+            "length_m is 299792458",
+            "expected that of the scene",
+        ]);
+    workplace
+        .run("export years.json --flight g.json -o out.glb --report report.json")
+        .success();
+    let report = workplace.read_json("report.json");
+    assert_eq!(report["scene"]["unit_length_m"], 9.4607304725808e15);
     workplace.write("out.json", in_g);
     workplace
         .run("export ball.json --flight list.json --report list.json -o out.glb")
@@ -143,6 +159,15 @@ fn flights_come_from_files() {
         ("{ \"flights\": [] }", "unknown key `flights`"),
         ("7", "expected a list of segments"),
         ("", "the text ends"),
+        (
+            "[{ \"proper_time\": 400, \"acceleration\": [1, 0, 0] }]",
+            "flight[0] ends at rapidity",
+        ),
+        (
+            "{ \"flight\": [{ \"proper_time\": 1, \"acceleration\": [1, 2, 3, 4] }] }",
+            "expected the list to end here",
+        ),
+        (BALL, "this is a scene, expected its flight alone"),
     ] {
         workplace.write("wrong.json", text);
         workplace

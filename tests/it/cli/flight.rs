@@ -244,11 +244,29 @@ fn errors_name_the_flag_and_what_was_expected() {
         ),
         ("--csv - --json -", ["--json and --csv", "stdout"]),
         ("--json flight.json", ["flight.json", "input"]),
-        ("--steps 1e308", ["at proper time 1e308", "beyond numbers"]),
+        (
+            "--steps 1e308",
+            ["at proper time 1e308", "farther than any number says"],
+        ),
     ] {
         workplace
             .run(&format!("flight flight.json {flags}"))
             .error(&words);
         assert_eq!(workplace.files(), before, "{flags}");
     }
+}
+
+/// XML has no control characters, whatever names and titles hold.
+#[test]
+fn an_svg_has_no_characters_that_xml_has_not() {
+    let workplace = Workplace::new();
+    let scene = FLIGHT.replacen("Past a sphere", "bell \\u0007 \\ufffe <&> \\u001b", 1);
+    workplace.write("bell.json", scene);
+    workplace
+        .run("flight bell.json --diagram bell.svg")
+        .success();
+    let svg = String::from_utf8(workplace.read("bell.svg")).expect("text");
+    assert!(svg.contains("bell  "), "{svg}");
+    let is_odd = |c: char| (c < ' ' && !"\n\r\t".contains(c)) || c == '\u{fffe}';
+    assert!(!svg.contains(is_odd));
 }
