@@ -54,6 +54,7 @@
 //! | files of photosurfaces | [`mod@write`] |
 //! | pictures by rays of light | [`mod@render`] |
 //! | what accuracy costs | [`study`] |
+//! | colours of light and of surfaces seen moving | [`effects`] |
 //! | the mathematics alone: velocities, frames, where a point is seen | [`spacetime`], [`light_cone`] |
 //!
 //! Conventions: c = 1; lengths and times share one unit; right-handed coordinates, y up; angles in radians.
@@ -63,7 +64,7 @@
 
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
-mod effects;
+pub mod effects;
 pub mod jobs;
 pub mod light_cone;
 pub mod material;

@@ -3,6 +3,13 @@
 //! Nothing here knows of places, meshes or light cones: each side comes to its numbers in its own way, and stays a
 //! witness of the other.
 
+mod cie_1931;
 mod color;
+mod gamut;
+mod ramp;
+mod spectrum;
 
 pub(crate) use color::{byte_of_linear, linear_of_byte, linear_of_srgb};
+pub use gamut::{luminance, tone, within_gamut};
+pub use ramp::{RAMP_OCTAVES, ramp_color};
+pub use spectrum::{Daylight, Reflectance, TemperatureError, black_body_color};

@@ -25,6 +25,10 @@ mod physics {
     mod properties;
 }
 
+mod effects {
+    mod colours;
+}
+
 mod flights {
     mod diagram;
     mod exact;
