@@ -332,7 +332,6 @@ mod tests {
         let light = Daylight::default();
         let mut levels: Vec<f64> = (0..=30).map(|level| f64::from(level) / 30.0).collect();
         levels.extend([1e-6, 1.0 - 1e-6]);
-        let mut worst = (0.0, DVec3::ZERO);
         for &red in &levels {
             for &green in &levels {
                 for &blue in &levels {
@@ -345,16 +344,12 @@ mod tests {
                     let at_the_end = spread <= 1e-6 && !(1e-3..0.999).contains(&color.x);
                     let limit = if at_the_end { 1e-6 } else { 1e-12 };
                     assert!(error <= limit, "{color}: off by {error:e}, {reflectance:?}");
-                    if !at_the_end && error > worst.0 {
-                        worst = (error, color);
-                    }
                     for nanometres in [100.0, 380.0, 500.0, 650.0, 730.0, 5000.0] {
                         assert!((0.0..=1.0).contains(&reflectance.at(nanometres * 1e-9)));
                     }
                 }
             }
         }
-        println!("the worst colour, {}, is off by {:e}", worst.1, worst.0);
     }
 
     #[test]
