@@ -17,6 +17,7 @@
 
 use glam::{DQuat, DVec3};
 
+use super::error::MAX_TURN_AT_CHANGING_SPEED;
 use super::smooth::{sinc_below_1, sinhc};
 use crate::spacetime::{Event, Lorentz, Rotation, length, unit};
 
@@ -26,9 +27,6 @@ const AT_REST: f64 = 1e-12;
 /// An acceleration whose part across the motion is so much smaller than the whole one does not turn an observer who
 /// comes to rest: it is what rounding leaves of a straight one.
 const STRAIGHT: f64 = 1e-9;
-
-/// The largest angle, in radians, of a turn at changing speed, whose integral takes time in proportion.
-pub(super) const MAX_TURN_AT_CHANGING_SPEED: f64 = 1e5;
 
 /// A coordinated turn, from the observer's velocity at its beginning.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,6 +5,15 @@ use thiserror::Error;
 
 use crate::spacetime::MAX_RAPIDITY;
 
+/// The largest angle, in radians, by which one segment turns: rounding leaves about four digits of its last turn.
+pub(super) const MAX_TURN: f64 = 1e12;
+
+/// The largest angle, in radians, of a coordinated turn at changing speed, whose integral takes time in proportion.
+pub(super) const MAX_TURN_AT_CHANGING_SPEED: f64 = 1e5;
+
+/// The largest number of steps of an integrator in one flight.
+pub(super) const MAX_STEPS: f64 = 1e7;
+
 /// Why numbers do not make a [`Segment`](super::Segment).
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -19,10 +28,7 @@ pub enum SegmentError {
     #[error("the turn rate is {0}, expected three finite numbers")]
     TurnRate(DVec3),
     /// So many turns that rounding leaves nothing of the last one.
-    #[error(
-        "the segment turns by {0:e} radians, expected at most {limit:e}",
-        limit = super::segment::MAX_TURN
-    )]
+    #[error("the segment turns by {0:e} radians, expected at most {MAX_TURN:e}")]
     Turn(f64),
 }
 
@@ -53,7 +59,7 @@ pub enum FlightError {
     #[error(
         "flight[{segment}] is steered \"coordinated\" and turns by {turn:e} radians while its speed changes, expected at \
          most {limit:e}",
-        limit = super::coordinated::MAX_TURN_AT_CHANGING_SPEED
+        limit = MAX_TURN_AT_CHANGING_SPEED
     )]
     TooManyTurns {
         /// Which segment, counted from 0.
@@ -67,7 +73,7 @@ pub enum FlightError {
     /// Too small a step for so long a flight.
     #[error(
         "the integrator would take {steps:e} steps, expected at most {limit:e}: choose a longer step",
-        limit = super::stepped::MAX_STEPS
+        limit = MAX_STEPS
     )]
     Steps {
         /// How many steps.

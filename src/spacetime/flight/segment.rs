@@ -3,10 +3,8 @@
 use glam::DVec3;
 
 use super::SegmentError;
+use super::error::MAX_TURN;
 use crate::spacetime::length;
-
-/// The largest angle, in radians, by which one segment turns: rounding leaves about four digits of its last turn.
-pub(super) const MAX_TURN: f64 = 1e12;
 
 /// How an observer turns during a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,11 +5,9 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
+use super::error::MAX_STEPS;
 use super::{FlightError, Segment, Steering};
 use crate::spacetime::{Event, Lorentz, MAX_RAPIDITY, Moment, Rotation, Velocity, length, unit};
-
-/// Largest number of steps of one flight.
-pub(super) const MAX_STEPS: f64 = 1e7;
 
 /// So many steps lie between two states that are kept.
 const KEPT: usize = 1024;
