@@ -41,7 +41,7 @@ pub(super) struct ExportArgs {
     #[command(flatten)]
     detail: DetailArgs,
     /// Write these numbers for every vertex: doppler, emission_time (from the moment of observation, so negative),
-    /// rest_position (overrides the scene); not with --animate=morph, which has only one value per vertex
+    /// rest_position, radiance (overrides the scene); not with --animate=morph, which has only one value per vertex
     #[arg(
         long,
         value_name = "A,A,...",

@@ -14,7 +14,7 @@ use super::vertex_data::VertexData;
 use super::{MomentFacts, Photosurface, PlacedSceneError, SurfaceOptions};
 use crate::light_cone::View;
 use crate::material::{Model, Part};
-use crate::scene::{MarkerRadius, Object, Scene, Source, Tolerance};
+use crate::scene::{Attribute, MarkerRadius, Object, Scene, Source, Tolerance};
 use crate::shape::{Appearance, Color, Shape};
 use crate::spacetime::{MAX_RAPIDITY, Velocity};
 
@@ -230,11 +230,13 @@ impl PlacedScene {
         objects.all(|(object, boxes)| {
             let view = self.view(object, step).expect(A_STEP);
             let stretch = view.relative_velocity().rapidity().exp();
-            boxes.iter().all(|&(low, high)| {
-                let away = (low - view.observer_rest()).length() + (high - low).length();
-                RANGE.contains(&(away * stretch))
-                    && RANGE.contains(&((high - low).max_element() / stretch))
-            })
+            // The fourth power of the Doppler factor is the largest number there is beside positions.
+            stretch.powi(4) < RANGE.end
+                && boxes.iter().all(|&(low, high)| {
+                    let away = (low - view.observer_rest()).length() + (high - low).length();
+                    RANGE.contains(&(away * stretch))
+                        && RANGE.contains(&((high - low).max_element() / stretch))
+                })
         })
     }
 

@@ -34,6 +34,7 @@ impl VertexData {
             Attribute::Doppler => numbers(&|position| view.doppler_factor(position)),
             Attribute::EmissionTime => numbers(&|position| view.emission_time(position)),
             Attribute::RestPosition => VertexValues::Vectors(rest.positions().to_vec()),
+            Attribute::Radiance => numbers(&|position| view.doppler_factor(position).powi(4)),
         };
         let columns = wanted
             .iter()
@@ -68,6 +69,11 @@ impl VertexData {
             VertexValues::Vectors(vectors) => Some(vectors),
             VertexValues::Numbers(_) => None,
         }
+    }
+
+    /// The radiance seen divided by the radiance emitted, of all wavelengths together, at each vertex.
+    pub fn radiances(&self) -> Option<&[f64]> {
+        self.numbers(Attribute::Radiance)
     }
 
     /// Sets the values of an attribute, or removes them if `values` is `None`.

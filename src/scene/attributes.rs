@@ -17,6 +17,9 @@ pub enum Attribute {
     EmissionTime,
     /// The place in the object's rest frame: `_REST_X`, `_REST_Y` and `_REST_Z` in glTF.
     RestPosition,
+    /// Radiance seen over radiance emitted, of all wavelengths together: the fourth power of the Doppler factor, `_RADIANCE`
+    /// in glTF. It is the searchlight effect; the eye, which sees some wavelengths alone, sees another.
+    Radiance,
 }
 
 /// How an attribute is called by users, in files and in messages.
@@ -31,7 +34,7 @@ struct Row {
 }
 
 /// All attributes, in the order in which files have them.
-const TABLE: [Row; 3] = [
+const TABLE: [Row; 4] = [
     Row {
         attribute: Attribute::Doppler,
         name: "doppler",
@@ -49,6 +52,12 @@ const TABLE: [Row; 3] = [
         name: "rest_position",
         quantity: "the place at rest",
         columns: &["rest_x", "rest_y", "rest_z"],
+    },
+    Row {
+        attribute: Attribute::Radiance,
+        name: "radiance",
+        quantity: "the radiance",
+        columns: &["radiance"],
     },
 ];
 
@@ -160,7 +169,7 @@ mod tests {
 
     #[test]
     fn names_are_the_same_in_scenes_and_on_the_command_line() {
-        for name in ["doppler", "emission_time", "rest_position"] {
+        for name in ["doppler", "emission_time", "rest_position", "radiance"] {
             let in_scene: Attribute = serde_json::from_str(&format!("\"{name}\"")).unwrap();
             assert_eq!(name.parse(), Ok(in_scene));
         }

@@ -68,7 +68,7 @@ impl Scalar<'_> {
         match self.values {
             Values::Known(values) => values.at(vertex, self.column),
             Values::AtRest(positions) => match self.attribute {
-                Attribute::Doppler => 1.0,
+                Attribute::Doppler | Attribute::Radiance => 1.0,
                 Attribute::EmissionTime => -positions[vertex].length(),
                 Attribute::RestPosition => positions[vertex][self.column],
             },

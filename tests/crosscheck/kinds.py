@@ -58,6 +58,6 @@ KINDS = {
     "hierarchy with a texture": mesh(write_hierarchy),
     "materials of an OBJ": mesh(write_obj),
     "materials of an OBJ beside a buffer of its own": mesh(write_obj, to="out.gltf"),
-    "attributes": scene(PASSING, "--attributes", "doppler,emission_time,rest_position"),
+    "attributes": scene(PASSING, "--attributes", "doppler,emission_time,rest_position,radiance"),
     **PLAYING,
 }

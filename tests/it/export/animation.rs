@@ -285,11 +285,12 @@ fn attributes_are_there_when_asked_for() {
     assert!(attributes(&none).iter().all(BTreeSet::is_empty));
     let file = export(
         &workplace,
-        "--attributes doppler,rest_position,emission_time",
+        "--attributes radiance,doppler,rest_position,emission_time",
     );
     let all = [
         "_DOPPLER",
         "_EMISSION_TIME",
+        "_RADIANCE",
         "_REST_X",
         "_REST_Y",
         "_REST_Z",
@@ -300,11 +301,13 @@ fn attributes_are_there_when_asked_for() {
     let placed = placed();
     let mut meshes = file.json["meshes"].as_array().unwrap().iter();
     let marker = &meshes.next().unwrap()["primitives"][0]["attributes"];
-    assert!(
-        file.numbers(&marker["_DOPPLER"])
-            .iter()
-            .all(|factor| *factor == 1.0)
-    );
+    for name in ["_DOPPLER", "_RADIANCE"] {
+        assert!(
+            file.numbers(&marker[name])
+                .iter()
+                .all(|factor| *factor == 1.0)
+        );
+    }
     let surfaces = (0..5).flat_map(|step| {
         placed
             .photosurfaces(step, SurfaceOptions::default())
@@ -322,6 +325,7 @@ fn attributes_are_there_when_asked_for() {
         let view = View::new(&moment, &object.unwrap().world_line());
         let [x, y, z] = ["_REST_X", "_REST_Y", "_REST_Z"].map(numbers);
         let (factors, times) = (numbers("_DOPPLER"), numbers("_EMISSION_TIME"));
+        let radiances = numbers("_RADIANCE");
         for (vertex, seen) in surface.mesh.positions().iter().enumerate() {
             let rest = DVec3::new(x[vertex].into(), y[vertex].into(), z[vertex].into());
             let case = format!("{} vertex {vertex}", surface.facts.name);
@@ -340,8 +344,19 @@ fn attributes_are_there_when_asked_for() {
                 (f64::from(factors[vertex]) / factor - 1.0).abs() < 1e-5,
                 "{case}"
             );
+            assert!(
+                (f64::from(radiances[vertex]) / factor.powi(4) - 1.0).abs() < 4e-5,
+                "{case}"
+            );
         }
     }
+    // A radiance that no number of the file can say is an error before any work, and fits into doubles.
+    let flags = "--example sphere --steps 0 --rapidity 25 --attributes radiance";
+    workplace
+        .run(&format!("export {flags} -o out.glb"))
+        .error(&["the radiance of vertex"]);
+    let run = workplace.run(&format!("export {flags} -o out.ply --max-triangles 5000"));
+    assert!(run.status < 2, "{run}");
     // The scene may ask for it, and the flag has the last word.
     workplace.write(
         "asks.json",
@@ -387,7 +402,7 @@ fn what_cannot_be_shown_is_refused() {
         ("-o out.glb --animate=loop", "frames, morph"),
         ("-o out.glb --animate --split", "--split"),
         ("-o out.glb --fps 12", "--animate"),
-        ("-o out.glb --attributes colour", "rest_position"),
+        ("-o out.glb --attributes colour", "rest_position, radiance"),
         (
             "-o out.glb --animate=morph --attributes doppler",
             "--animate=frames",
