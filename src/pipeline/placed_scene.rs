@@ -230,8 +230,10 @@ impl PlacedScene {
         objects.all(|(object, boxes)| {
             let view = self.view(object, step).expect(A_STEP);
             let stretch = view.relative_velocity().rapidity().exp();
-            // The fourth power of the Doppler factor is the largest number there is beside positions.
-            stretch.powi(4) < RANGE.end
+            // The fourth power of a Doppler factor may be larger than any position.
+            let is_bright = self.scene.attributes().contains(Attribute::Radiance)
+                && stretch.powi(4) >= RANGE.end;
+            !is_bright
                 && boxes.iter().all(|&(low, high)| {
                     let away = (low - view.observer_rest()).length() + (high - low).length();
                     RANGE.contains(&(away * stretch))
