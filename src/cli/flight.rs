@@ -61,8 +61,8 @@ struct DiagramArgs {
     #[arg(long, value_name = "OBJECT[:X,Y,Z]", value_parser = point, requires = "diagram")]
     point: Vec<DiagramPoint>,
     /// Direction of space in the diagram, in the scene frame, a vector of any length; what is beside the plane of this
-    /// direction and time through the observer at proper time 0 is hollow or dashed [default: from the observer's first place in the diagram to the farthest one;
-    /// if the observer stays, to the farthest emission event]
+    /// direction and time through the observer at proper time 0 is hollow or dashed [default: from the observer's first
+    /// place in the diagram to the farthest one; if the observer stays, to the farthest emission event]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, requires = "diagram")]
     plane: Option<DVec3>,
     /// Size of the diagram in pixels, from 640x480 to 8192x8192 [default: 800x800]

@@ -45,7 +45,6 @@ pub fn tone(color: DVec3) -> DVec3 {
     let room = 1.0 - COMPRESSED_FROM;
     let compressed = 1.0 - room * room / (peak + room - COMPRESSED_FROM);
     let whiter = 1.0 - 1.0 / (DESATURATION * (peak - compressed) + 1.0);
-    // Light that is too strong for its square is all but white.
     (color / peak * compressed).lerp(DVec3::splat(compressed), whiter)
 }
 

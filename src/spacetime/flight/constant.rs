@@ -109,7 +109,7 @@ impl ConstantMotion {
     /// # Accuracy
     ///
     /// A few units in the last place of the time of the displacement, of the Lorentz factor and of 1, times one more
-    /// than the angle of the turn and the rapidity of the boost (`tests/it/physics/flights.rs`).
+    /// than the angle of the turn and the rapidity of the boost (`tests/it/flights/exact.rs`).
     pub(super) fn after(&self, proper_time: f64) -> (Event, Lorentz) {
         let t = proper_time * self.unit;
         let (boost, turn) = (self.alpha * t, self.omega * t);

@@ -20,7 +20,7 @@ use crate::spacetime::exact::two_sum;
 /// # Accuracy
 ///
 /// By [`Integrator::Exact`] a flight is known to rounding: one long segment and the many short ones that it is made of
-/// lead to the same moments (`tests/it/physics/flights.rs`, which also compares with 200 bits). Its axes are orthonormal
+/// lead to the same moments (`tests/it/flights/exact.rs`, which also compares with 256 bits). Its axes are orthonormal
 /// whatever the number of segments. A moment takes a time that grows with the logarithm of the number of segments.
 ///
 /// # Example
