@@ -205,7 +205,7 @@ impl WorldlineDiagram {
                 Ok(DiagramMoment {
                     proper_time: time,
                     event: event_at(flight, time)?,
-                    time_axis: four_velocity(flight, time),
+                    time_axis: velocity.four_velocity(),
                     space_axis: Event::new(along, direction),
                 })
             })
@@ -338,14 +338,6 @@ fn is_near(event: Event) -> bool {
     time.abs() <= MAX_COORDINATE && position.abs().cmple(DVec3::splat(MAX_COORDINATE)).all()
 }
 
-fn four_velocity(flight: &Flight, proper_time: f64) -> Event {
-    let line = WorldLine {
-        origin: Event::default(),
-        velocity: flight.moment(proper_time).velocity(),
-    };
-    line.four_velocity()
-}
-
 /// Length and time of a difference of events, whichever is more.
 fn size(difference: Event) -> f64 {
     difference.time.abs().max(length(difference.position))
@@ -418,7 +410,7 @@ fn ticks(flight: &Flight, from: f64, to: f64) -> Result<Vec<DiagramTick>, Diagra
         Ok(DiagramTick {
             proper_time,
             event: event_at(flight, proper_time)?,
-            four_velocity: four_velocity(flight, proper_time),
+            four_velocity: flight.moment(proper_time).velocity().four_velocity(),
         })
     };
     (0..=count).map(tick).collect()

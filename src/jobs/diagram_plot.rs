@@ -83,7 +83,7 @@ impl WorldlineDiagram {
                 off_plane: off_plane.into_iter().any(|event| self.is_off_plane(event)),
                 course: Course::Endless(
                     self.spot(point.world_line.origin),
-                    self.spot(point.world_line.four_velocity()),
+                    self.spot(point.world_line.velocity.four_velocity()),
                 ),
             });
         }
@@ -194,7 +194,7 @@ impl WorldlineDiagram {
             let line = &point.world_line;
             (
                 self.spot(line.origin),
-                self.spot(line.four_velocity()),
+                self.spot(line.velocity.four_velocity()),
                 point.name.clone(),
             )
         });

@@ -200,11 +200,7 @@ impl Leg {
         let Event { time, position } = self.displacement_frame;
         if position == DVec3::ZERO {
             // A clock alone: as many digits at any speed, also at one that adds next to nothing to 1.
-            let line = WorldLine {
-                origin: Event::default(),
-                velocity: frame,
-            };
-            return line.four_velocity() * time;
+            return frame.four_velocity() * time;
         }
         // The turn is undone first: so the boost back is along the velocity as it was given.
         let boosted = Event::new(time, rest_to_frame.rotation().inverse() * position);

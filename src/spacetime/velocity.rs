@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use thiserror::Error;
 
-use super::{exact, heading, length, unit};
+use super::{Event, exact, heading, length, unit};
 
 /// The largest rapidity a [`Velocity`] may have: `1 - beta` is then about `2e-304`.
 ///
@@ -194,6 +194,15 @@ impl Velocity {
         }
     }
 
+    /// Of which `celerity` is the space part of the four-velocity; that of rest is zero.
+    pub(super) fn of_celerity(celerity: DVec3) -> Self {
+        let size = length(celerity);
+        match unit(celerity) {
+            Some(direction) => Self::from_parts(size.asinh(), size + size.hypot(1.0), direction),
+            None => Self::ZERO,
+        }
+    }
+
     /// In the same direction, or in the opposite one, with another rapidity.
     ///
     /// `stretch` is `exp(rapidity)`, rounded by itself: near 1 the two may disagree about the sense of motion. The
@@ -267,6 +276,11 @@ impl Velocity {
             return self.rapidity.sinh();
         }
         0.5 * self.stretch - 0.5 / self.stretch
+    }
+
+    /// The four-velocity `(gamma, gamma beta n)`: the change of an event with the proper time of something that moves so.
+    pub fn four_velocity(&self) -> Event {
+        Event::new(self.gamma(), self.direction * self.gamma_beta())
     }
 
     /// The velocity with which this one's rest frame sees its reference frame move, axes related

@@ -16,14 +16,6 @@ pub struct WorldLine {
 impl WorldLine {
     /// The event at `proper_time` after [`WorldLine::origin`].
     pub fn at(&self, proper_time: f64) -> Event {
-        self.origin + self.four_velocity() * proper_time
-    }
-
-    /// The change of the event with proper time: `(gamma, gamma beta n)`.
-    pub fn four_velocity(&self) -> Event {
-        Event::new(
-            self.velocity.gamma(),
-            self.velocity.direction() * self.velocity.gamma_beta(),
-        )
+        self.origin + self.velocity.four_velocity() * proper_time
     }
 }

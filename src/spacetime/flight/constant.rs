@@ -29,7 +29,7 @@
 use glam::{DQuat, DVec3};
 
 use super::smooth::{cosh_above_sinhc, sinc_above_cos, sinc_below_1, sinhc, sinhc_above_1};
-use crate::spacetime::{Event, Lorentz, Rotation, Velocity, exact, heading, length, unit};
+use crate::spacetime::{Event, Lorentz, Rotation, Velocity, exact, heading, length};
 
 /// Below this size of `N` all functions have their values at 0 to all digits.
 const LEAST: f64 = 1e-100;
@@ -151,11 +151,7 @@ impl ConstantMotion {
             let ahead = Velocity::from_rapidity(1.0, self.acceleration).unwrap_or_default();
             return ahead.with_signed_rapidity(boost, boost.exp());
         }
-        let Some(direction) = unit(celerity) else {
-            return Velocity::ZERO;
-        };
-        let size = length(celerity);
-        Velocity::from_parts(size.asinh(), size + size.hypot(1.0), direction)
+        Velocity::of_celerity(celerity)
     }
 
     /// How coordinates turn after the boost: against the turn of the axes.

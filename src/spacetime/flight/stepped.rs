@@ -218,13 +218,7 @@ impl State {
     fn own_to_next(&self) -> Lorentz {
         let [[_, x, y, z], axes @ ..] = self.tetrad;
         let celerity = DVec3::new(x, y, z);
-        let velocity = match unit(celerity) {
-            Some(direction) => {
-                let size = length(celerity);
-                Velocity::from_parts(size.asinh(), size + size.hypot(1.0), direction)
-            }
-            None => Velocity::ZERO,
-        };
+        let velocity = Velocity::of_celerity(celerity);
         // The boost back of what is across the four-velocity: x - t celerity / (1 + gamma).
         let back = celerity / (1.0 + velocity.gamma());
         let axes = axes.map(|[time, x, y, z]| DVec3::new(x, y, z) - back * time);

@@ -464,7 +464,7 @@ fn axes_carried_around_a_circle_precess() {
             velocity: next,
         };
         // The next velocity as the traveller sees it now.
-        let own = frame.apply(flight.four_velocity()).position;
+        let own = frame.apply(flight.velocity.four_velocity()).position;
         let boost = Velocity::from_rapidity(own.length().asinh(), own).unwrap();
         frame = frame.then(&Lorentz::boost(boost));
     }
