@@ -127,6 +127,7 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
         return integrators(args, verbosity);
     }
     let drawing = output.drawing()?;
+    let shows_tables = output.shows_tables()?;
     ensure!(
         !(output.csv.as_deref().is_some_and(is_stdout) && only.is_none()),
         "--csv: two tables cannot both go to stdout; choose one with --only meshes or --only rays"
@@ -169,7 +170,7 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     }
     tell(&study, settings.max_triangles, verbosity);
 
-    if output.shows_tables() {
+    if shows_tables {
         print_if_open(|out| tables_of(&study, out))?;
     }
     // The plot may fail: no file is written before it is there.
@@ -195,6 +196,7 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
 fn integrators(args: &CostArgs, verbosity: Verbosity) -> anyhow::Result<()> {
     let output = &args.output;
     let drawing = output.drawing()?;
+    let shows_tables = output.shows_tables()?;
     let others = "is for meshes and pictures, which --integrators leaves out";
     refuse(&[("--only", args.study.only.is_some())], others)?;
     refuse(&args.meshes.given(), others)?;
@@ -220,7 +222,7 @@ fn integrators(args: &CostArgs, verbosity: Verbosity) -> anyhow::Result<()> {
         ),
         _ => anyhow::Error::new(error).context("--integrators"),
     })?;
-    if output.shows_tables() {
+    if shows_tables {
         print_if_open(|out| table_of_integrators(&study, out))?;
     }
     output.write_plot(drawing, 480, |format, size| match format {

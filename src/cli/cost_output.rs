@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, ensure};
+use anyhow::Context;
 use photosurface::study::{PlotError, PlotSize};
 
 use super::drawing::{DrawingFormat, plot_size};
-use super::output::{is_stdout, write_result};
+use super::output::{shows_table, write_result};
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Output")]
@@ -29,18 +29,14 @@ pub(super) struct CostOutputArgs {
 }
 
 impl CostOutputArgs {
-    /// The file of the plot, if there is to be one, after a check that all outputs can be.
+    /// The file of the plot, if there is to be one.
     pub(super) fn drawing(&self) -> anyhow::Result<Option<(&Path, DrawingFormat)>> {
-        ensure!(
-            !(to_stdout(&self.json) && to_stdout(&self.csv)),
-            "--json and --csv cannot both go to stdout"
-        );
         DrawingFormat::of_flag("--plot", self.plot.as_deref())
     }
 
     /// Whether the tables for people go to stdout.
-    pub(super) fn shows_tables(&self) -> bool {
-        !to_stdout(&self.json) && !to_stdout(&self.csv)
+    pub(super) fn shows_tables(&self) -> anyhow::Result<bool> {
+        shows_table(self.json.as_deref(), self.csv.as_deref())
     }
 
     /// Draws and writes the plot, so many pixels high unless the size is given.
@@ -59,8 +55,4 @@ impl CostOutputArgs {
         };
         write_result(path, &draw(format, size).context("--plot")?)
     }
-}
-
-fn to_stdout(file: &Option<PathBuf>) -> bool {
-    file.as_deref().is_some_and(is_stdout)
 }

@@ -15,7 +15,7 @@ use super::drawing::{DrawingFormat, plot_size};
 use super::flight_tables::{csv_of_moments, table_of};
 use super::input::Input;
 use super::messages::{Verbosity, print_if_open};
-use super::output::{check_destinations, is_stdout, write_result};
+use super::output::{check_destinations, shows_table, write_result};
 
 /// Rows of the table of a flight whose scene has no steps.
 const ROWS: usize = 11;
@@ -92,11 +92,7 @@ pub(super) fn run(args: &FlightArgs) -> anyhow::Result<()> {
     let verbosity = Verbosity::new(args.quiet, false);
     let output = &args.output;
     let drawing = DrawingFormat::of_flag("--diagram", args.diagram.diagram.as_deref())?;
-    let to_stdout = |file: &Option<PathBuf>| file.as_deref().is_some_and(is_stdout);
-    ensure!(
-        !(to_stdout(&output.json) && to_stdout(&output.csv)),
-        "--json and --csv cannot both go to stdout"
-    );
+    let shows_table = shows_table(output.json.as_deref(), output.csv.as_deref())?;
     let input = Input::read(&args.input, &args.observer, verbosity)?;
     let files = [&output.json, &output.csv, &args.diagram.diagram];
     check_destinations(files.into_iter().flatten().cloned(), &input.files)?;
@@ -121,7 +117,7 @@ pub(super) fn run(args: &FlightArgs) -> anyhow::Result<()> {
     });
     let diagram = diagram.transpose()?;
 
-    if !to_stdout(&output.json) && !to_stdout(&output.csv) {
+    if shows_table {
         print_if_open(|out| table_of(&moments, scene.units(), out))?;
     }
     if let Some((path, bytes)) = diagram {

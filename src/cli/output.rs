@@ -4,6 +4,7 @@ use std::io::{IsTerminal, stderr};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use anyhow::ensure;
 use indicatif::{ProgressBar, ProgressStyle};
 use photosurface::jobs::check_outputs;
 use photosurface::write::{Format, write_whole};
@@ -56,6 +57,13 @@ pub(super) fn check_destinations(
 ) -> anyhow::Result<()> {
     let written = written.into_iter().filter(|file| !is_stdout(file));
     Ok(check_outputs(written, read)?)
+}
+
+/// Whether a table for people goes to stdout: not where its JSON or its CSV does. Both cannot.
+pub(super) fn shows_table(json: Option<&Path>, csv: Option<&Path>) -> anyhow::Result<bool> {
+    let [json, csv] = [json, csv].map(|file| file.is_some_and(is_stdout));
+    ensure!(!(json && csv), "--json and --csv cannot both go to stdout");
+    Ok(!json && !csv)
 }
 
 /// Writes a result to stdout or to a file, which appears whole or not at all.
