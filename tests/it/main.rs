@@ -30,6 +30,7 @@ mod effects {
 }
 
 mod flights {
+    mod commands;
     mod diagram;
     mod exact;
     mod known_answers;
