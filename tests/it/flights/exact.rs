@@ -21,7 +21,7 @@ use crate::common::{Random, Worst};
 pub(super) type Big = FBig<HalfEven, 2>;
 
 /// Units in the last place of the natural scale; the worst seen is 1.5.
-const ULPS: f64 = 4.0;
+const ULPS: f64 = 2.0;
 
 /// 77 digits, of which `exp(2 * 40)` takes 35.
 const BITS: usize = 256;
