@@ -40,6 +40,17 @@ pub enum PlacedSceneError {
         /// The rapidity of its velocity.
         rapidity: f64,
     },
+    /// What stands for an object without contraction is too large.
+    #[error(
+        "object \"{object}\" without contraction reaches {reach:e} from the observer, expected at most 1e150; \
+         expected a lower speed or another model"
+    )]
+    Reach {
+        /// The object in the scene.
+        object: String,
+        /// The largest distance of its stand-in from the observer, in scene units.
+        reach: f64,
+    },
     /// The scene has no such step.
     #[error("step {step} of a scene with {steps} steps, expected less than {steps}")]
     Step {

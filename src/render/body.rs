@@ -11,7 +11,7 @@ use super::shape_placement::SmoothHit;
 use super::sphere::Ball;
 use super::turned::Turned;
 use crate::mesh::Mesh;
-use crate::spacetime::{WorldLine, unit};
+use crate::spacetime::{ViewModel, WorldLine, unit};
 
 /// What has no corners is within a ball so much larger, roundings and all.
 const RADIUS_MARGIN: f64 = 1.0 + 1e-9;
@@ -59,9 +59,9 @@ impl Geometry {
 #[derive(Clone, Copy)]
 pub(super) enum Stands {
     /// Its rest frame.
-    AtRest(WorldLine),
+    AtRest(WorldLine, ViewModel),
     /// The observer's, mapped from its rest frame.
-    Mapped(WorldLine),
+    Mapped(WorldLine, ViewModel),
     /// The observer's frame, as it is.
     InView,
 }
@@ -152,7 +152,7 @@ impl Body {
             paint: &self.paint,
             distance: hit.distance / ray.stretch,
             cosine: cosine.abs().min(1.0),
-            doppler: ray_rest.doppler(),
+            doppler: ray_rest.doppler,
             texture: hit.texture,
             vertex_color: hit.vertex_color,
             triangle,
@@ -160,7 +160,7 @@ impl Body {
     }
 
     fn is_mapped(&self) -> bool {
-        matches!(self.stands, Stands::Mapped(_))
+        matches!(self.stands, Stands::Mapped(..))
     }
 }
 

@@ -113,7 +113,7 @@ impl Scenery {
         &self.textures
     }
 
-    /// Adds a part of `object`, at rest, in the object's rest frame.
+    /// Adds a part of `object`, at rest, in the object's rest frame, to be shown under the object's model.
     ///
     /// Spheres, cylinders, rods and cones are met as the surfaces that they are, whatever facets their parts have. A torus
     /// gets facets within a ten thousandth of its size, unless it has a resolution of its own: the
@@ -129,11 +129,11 @@ impl Scenery {
             },
             _ => Geometry::Mesh(Caster::new(part.mesh().clone())),
         };
-        let stands = Stands::AtRest(object.world_line());
+        let stands = Stands::AtRest(object.world_line(), object.view_model());
         self.add(geometry, part.material.as_ref(), &object.name, stands);
     }
 
-    /// Adds a photosurface of `object`, in the observer's frame with the observer at the origin.
+    /// Adds a photosurface of `object`, or what is shown of it under another model, in the observer's frame with the observer at the origin.
     pub fn add_photosurface(
         &mut self,
         object: &Object,
@@ -141,7 +141,7 @@ impl Scenery {
         material: Option<&Arc<Material>>,
     ) {
         let geometry = Geometry::Mesh(Caster::new(mesh.clone()));
-        let stands = Stands::Mapped(object.world_line());
+        let stands = Stands::Mapped(object.world_line(), object.view_model());
         self.add(geometry, material, &object.name, stands);
     }
 
