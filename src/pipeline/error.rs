@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::scene::InvalidScene;
 use crate::spacetime::MAX_RAPIDITY;
 
 /// Reasons why a scene and its models make no placed scene, or why a placed scene has no photosurfaces.
@@ -16,6 +17,9 @@ pub enum PlacedSceneError {
         /// Number of models.
         models: usize,
     },
+    /// A scene with each object under several models is not valid.
+    #[error(transparent)]
+    Scene(#[from] InvalidScene),
     /// A mesh has a vertex whose position is not finite in the object's rest frame.
     #[error("part \"{part}\" of object \"{object}\" has a vertex that is not finite")]
     NotFinite {

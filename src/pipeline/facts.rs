@@ -21,6 +21,10 @@ pub struct Facts {
     /// Which effects of special relativity the shape is shown with; absent for a photosurface, which has them all.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub model: Option<ViewModel>,
+    /// How far files move the photosurface in the observer's frame, in scene units, so that it stands beside others; absent
+    /// where it stays.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub beside: Option<[f64; 3]>,
     /// The part of the object's model; empty where there is only one and it has no name.
     pub part: String,
     /// The `extras` of the part in the source, unchanged.

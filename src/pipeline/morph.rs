@@ -24,7 +24,13 @@ impl PlacedScene {
                 let steps = surfaces.into_iter().zip(&shown).enumerate();
                 steps
                     .map(|(step, (surface, shown))| {
-                        self.photosurface(object, step, shown, surface, wanted)
+                        self.photosurface(
+                            object,
+                            (step, placed_object.beside),
+                            shown,
+                            surface,
+                            wanted,
+                        )
                     })
                     .collect()
             })

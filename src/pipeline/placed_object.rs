@@ -27,6 +27,8 @@ pub(super) struct PlacedObject {
     /// Number of triangles that are kept whatever the budget: those of the object's meshes, or those of the coarsest
     /// form of its shape.
     pub(super) source_triangles: u64,
+    /// How far files move the object, in the observer's frame, so that it stands beside others.
+    pub(super) beside: DVec3,
     /// How many triangles refinement may add; `None` if there is no limit.
     pub(super) granted: Option<Granted>,
 }
@@ -125,6 +127,7 @@ impl PlacedObject {
             shaped: None,
             loosening: self.loosening,
             source_triangles: self.source_triangles,
+            beside: self.beside,
             granted: None,
         };
         Some((sketch, weights))

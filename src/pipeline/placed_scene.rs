@@ -118,6 +118,7 @@ impl PlacedScene {
                 parts,
                 shaped,
                 loosening: 1.0,
+                beside: DVec3::ZERO,
                 granted: None,
             });
         }
@@ -131,13 +132,17 @@ impl PlacedScene {
         Ok(placed)
     }
 
-    /// The same placed scene with all objects shown under one model.
+    /// The same placed scene with all objects shown under one model; aims that a budget has loosened are reset.
     ///
     /// # Errors
     ///
     /// An error is returned if an object without contraction would be too large for `f64`.
     pub fn with_model_for_all(mut self, model: ViewModel) -> Result<Self, PlacedSceneError> {
         self.scene = self.scene.with_model_for_all(model);
+        for placed_object in &mut self.objects {
+            placed_object.loosening = 1.0;
+            placed_object.granted = None;
+        }
         self.check_stand_ins()?;
         Ok(self)
     }
@@ -244,11 +249,11 @@ impl PlacedScene {
         let objects = self.scene.objects().iter().zip(&self.objects);
         let made = objects.flat_map(move |(object, placed_object)| {
             let plan = self.plan(object, placed_object, step, wanted);
-            let shown = plan.shown;
+            let (shown, beside) = (plan.shown, placed_object.beside);
             let surfaces = make(plan, wanted);
-            surfaces
-                .into_iter()
-                .map(move |surface| self.photosurface(object, step, &shown, surface, wanted))
+            surfaces.into_iter().map(move |surface| {
+                self.photosurface(object, (step, beside), &shown, surface, wanted)
+            })
         });
         Ok(made)
     }
@@ -316,7 +321,7 @@ impl PlacedScene {
     pub(super) fn photosurface(
         &self,
         object: &Object,
-        step: usize,
+        (step, beside): (usize, DVec3),
         shown: &ModelView,
         surface: Surface<'_>,
         wanted: SurfaceOptions,
@@ -342,6 +347,7 @@ impl PlacedScene {
             vertices: surface.seen.mesh.positions().len(),
             triangles: surface.seen.mesh.triangles().len(),
             condition: surface.seen.condition(shown),
+            beside: (beside != DVec3::ZERO).then(|| beside.to_array()),
             certificate: surface.certificate,
         };
         Photosurface {
@@ -350,6 +356,7 @@ impl PlacedScene {
             material: surface.part.material.clone(),
             mesh: surface.seen.mesh,
             around: surface.around,
+            beside,
         }
     }
 }

@@ -151,15 +151,17 @@ impl Scenery {
         self.add(geometry, part.material.as_ref(), &part.name, Stands::InView);
     }
 
-    /// Adds a thing that stands in the observer's frame and is only hinted at, in one colour.
-    pub fn add_ghost(&mut self, mesh: Mesh, color: Color) {
-        let paint = Paint::plain();
-        let body = Body {
-            geometry: Geometry::Mesh(Caster::new(mesh)),
-            paint,
-            stands: Stands::InView,
+    /// Sets all things that stand in the observer's frame and are only hinted at, each in one colour.
+    pub fn set_ghosts(&mut self, ghosts: impl IntoIterator<Item = (Mesh, Color)>) {
+        let ghost = |(mesh, color): (Mesh, Color)| {
+            let body = Body {
+                geometry: Geometry::Mesh(Caster::new(mesh)),
+                paint: Paint::plain(),
+                stands: Stands::InView,
+            };
+            (body, color.linear().into())
         };
-        self.ghosts.push((body, color.linear().into()));
+        self.ghosts = ghosts.into_iter().map(ghost).collect();
     }
 
     fn add(

@@ -118,6 +118,28 @@ impl Scene {
         self
     }
 
+    /// The scene with all objects under each of these models, whatever they had, one model after the other; each object has
+    /// the name of the model behind its own, as `ball_delayed`.
+    ///
+    /// # Errors
+    ///
+    /// No model, a model that is given twice, or an object that has such a name already.
+    pub fn with_each_model(self, models: &[ViewModel]) -> Result<Self, InvalidScene> {
+        let of_model = |&model: &ViewModel| {
+            self.objects.iter().map(move |object| Object {
+                name: format!("{}_{model}", object.name),
+                model: Some(model),
+                ..object.clone()
+            })
+        };
+        let objects: Vec<Object> = models.iter().flat_map(of_model).collect();
+        let checked = Self::new(self.observer.clone(), objects)?;
+        Ok(Self {
+            objects: checked.objects,
+            ..self
+        })
+    }
+
     /// The scene with these attributes asked for, and no others.
     #[must_use]
     pub fn with_attributes(mut self, attributes: Attributes) -> Self {
