@@ -245,7 +245,7 @@ class View:
         # It is at `now` at time 0 and moves on straight: its light left at the time t <= 0 with |now + v t| = -t.
         v = [x / self._motion()[0] for x in self._motion()[1:]]
         a, b, c = 1 - dot(v, v), -dot(now, v), -dot(now, now)
-        time = (b - mp.sqrt(b * b - a * c)) / a
+        time = (-b - mp.sqrt(b * b - a * c)) / a
         return [n + time * w for n, w in zip(now, v, strict=True)]
 
     def _motion(self):
