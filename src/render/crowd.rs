@@ -117,7 +117,7 @@ impl<'a> Crowd<'a> {
             else {
                 return;
             };
-            let distance = hit.distance / path.ray.stretch;
+            let distance = hit.distance() / path.ray.stretch;
             let is_nearer = found.as_ref().is_none_or(|found| {
                 distance < found.distance || (distance == found.distance && body < found.body)
             });
@@ -142,7 +142,7 @@ impl<'a> Crowd<'a> {
                 let body = group.first + number as usize;
                 if let Some(hit) = self.bodies[body].0.cast(&path.prepared, 0.0, f64::MAX) {
                     let found = Found {
-                        distance: hit.distance / path.ray.stretch,
+                        distance: hit.distance() / path.ray.stretch,
                         body,
                         hit,
                         ray: path.ray,
@@ -236,7 +236,7 @@ impl Group {
         let mut nearest: Option<(usize, BodyHit)> = None;
         self.tree.along(ray, limit, |number| {
             let body = self.first + number as usize;
-            let farthest = nearest.as_ref().map_or(limit, |(_, hit)| hit.distance);
+            let farthest = nearest.as_ref().map_or(limit, |(_, hit)| hit.distance());
             let is_first = nearest.as_ref().is_some_and(|&(first, _)| body < first);
             // Including what is as far as what was found.
             let reach = if is_first {
@@ -246,7 +246,7 @@ impl Group {
             };
             match bodies[body].0.cast(ray, beyond, reach) {
                 Some(hit) => {
-                    let distance = hit.distance;
+                    let distance = hit.distance();
                     nearest = Some((body, hit));
                     distance
                 }
@@ -339,7 +339,7 @@ mod tests {
                     }
                 }
                 let found = crowd.nearest(seen, 0.0, f64::MAX, false);
-                let told = |hit: Hit| (hit.distance, hit.cosine, hit.doppler, hit.texture);
+                let told = |hit: Hit| (hit.distance, hit.facing, hit.doppler, hit.texture);
                 assert_eq!(found.map(told), nearest.map(told), "{name} {seen}");
             }
         }
@@ -381,14 +381,17 @@ mod tests {
                     };
                     assert!((hit.doppler - doppler).abs() < 1e-14 * doppler, "{seen}");
                     // At rest, all of a ball is seen head-on from its middle.
-                    assert!(!is_ball || (hit.cosine - 1.0).abs() < 1e-14, "{seen}");
+                    assert!(
+                        !is_ball || (hit.facing.eye_cosine() - 1.0).abs() < 1e-14,
+                        "{seen}"
+                    );
                 }
                 // Straight ahead and behind, whatever the frame.
                 for (seen, doppler) in [(DVec3::NEG_Z, 3.0), (DVec3::Z, 1.0 / 3.0)] {
                     let hit = crowd.nearest(seen, 0.0, f64::MAX, false).unwrap();
                     let doppler = if is_moving { doppler } else { 1.0 };
                     assert!((hit.doppler - doppler).abs() < 1e-14);
-                    assert!((hit.cosine - 1.0).abs() < 1e-14);
+                    assert!((hit.facing.eye_cosine() - 1.0).abs() < 1e-14);
                     assert_eq!(hit.body, 0);
                 }
             }

@@ -18,6 +18,7 @@ mod picture;
 mod pixel_shader;
 mod ray;
 mod scenery;
+mod shading;
 mod shape_placement;
 mod slant;
 mod sphere;

@@ -5,9 +5,8 @@ use glam::{DVec2, DVec3, Vec3};
 use super::Camera;
 use super::body::Hit;
 use super::crowd::Crowd;
-
-/// How bright a surface is that the lamp only grazes.
-pub(super) const AMBIENT: f32 = 0.25;
+use super::paint::Look;
+use super::shading::head_light;
 
 /// Most surfaces one ray of light is followed through.
 const MAX_LAYERS: usize = 64;
@@ -62,7 +61,7 @@ impl PixelShader<'_> {
     fn light(&self, place: DVec2, seen: DVec3) -> Vec3 {
         let (mut light, distance) = self.solid_light(place, seen);
         for hit in self.ghosts.all(seen) {
-            let grazing = 1.0 - hit.cosine as f32;
+            let grazing = 1.0 - hit.facing.eye_cosine() as f32;
             let opacity = GHOST[0] + GHOST[1] * grazing * grazing;
             let behind = hit.distance > distance;
             let veiled = if behind { GHOST_BEHIND } else { 1.0 };
@@ -84,12 +83,12 @@ impl PixelShader<'_> {
             let Some(hit) = nearest else {
                 return (light + self.background * clearness, first);
             };
-            let (color, opacity) = self.surface(place, &hit);
-            if opacity > 0.0 {
+            let look = self.surface(place, &hit);
+            if look.opacity > 0.0 {
                 first = first.min(hit.distance);
+                light += light_of(&look, &hit) * (look.opacity * clearness);
             }
-            light += color * (brightness(&hit) * opacity * clearness);
-            clearness *= 1.0 - opacity;
+            clearness *= 1.0 - look.opacity;
             if clearness < OPAQUE {
                 break;
             }
@@ -98,28 +97,29 @@ impl PixelShader<'_> {
         (light, first)
     }
 
-    /// Colour and opacity of what is hit, with the wires on it.
-    fn surface(&self, place: DVec2, hit: &Hit) -> (Vec3, f32) {
-        let (color, opacity) = hit.paint.color_at(hit.texture, hit.vertex_color);
-        let (Some((wire, camera)), Some(triangle)) = (self.wires, hit.triangle) else {
-            return (color, opacity);
-        };
-        let corners = triangle.map(|corner| corner - self.crowd.eye());
-        match is_on_edge(camera, corners, place) {
-            // Not opaque: where triangles are smaller than pixels all would be wire.
-            true => (color.lerp(wire, WIRE), opacity.max(WIRE)),
-            false => (color, opacity),
+    /// What the place that is hit looks like, with the wires on it.
+    fn surface(&self, place: DVec2, hit: &Hit) -> Look {
+        let mut look = hit.paint.look(&hit.texture, hit.vertex_color);
+        if let (Some((wire, camera)), Some(triangle)) = (self.wires, hit.triangle) {
+            let corners = triangle.map(|corner| corner - self.crowd.eye());
+            if is_on_edge(camera, corners, place) {
+                // Not opaque: where triangles are smaller than pixels all would be wire.
+                look.base_color = look.base_color.lerp(wire, WIRE);
+                look.opacity = look.opacity.max(WIRE);
+            }
         }
+        look
     }
 }
 
-/// How much of its colour what is hit shows by the lamp at the eye.
-fn brightness(hit: &Hit) -> f32 {
-    debug_assert!((0.0..=1.0).contains(&hit.cosine) && hit.doppler > 0.0);
-    match hit.paint.unlit {
-        true => 1.0,
-        false => AMBIENT + (1.0 - AMBIENT) * hit.cosine as f32,
+/// The light that the eye gets from a place of a surface.
+fn light_of(look: &Look, hit: &Hit) -> Vec3 {
+    debug_assert!(hit.doppler > 0.0);
+    if hit.paint.unlit {
+        return look.base_color;
     }
+    let reflected = head_light(look.finish, hit.facing, look.open);
+    look.base_color * reflected.tinted as f32 + reflected.white as f32 + look.emission
 }
 
 /// Whether a place of the picture is on an edge of a triangle, given by its corners from the eye.

@@ -33,10 +33,11 @@ const FACETS: f64 = 1e-4;
 ///
 /// # Shading
 ///
-/// A lamp shines from the eye: a surface is as bright as the cosine between its normal and the direction to
-/// the eye, on top of a little light from everywhere. For an observer in motion these are normal and
-/// direction in the *rest frame* of the object: there its surface scatters light, and only there does the angle say how
-/// much of it. In the observer's frame the photosurface of whatever comes towards the observer is so long
+/// A lamp shines from the eye, and a little light comes from all around, more from above: metal, roughness, occlusion and
+/// emission of materials are those of glTF, without normal maps and without most extensions (`KHR_materials_unlit`,
+/// `KHR_materials_emissive_strength` and `KHR_texture_transform` hold). For an observer in motion normal and directions are
+/// those in the *rest frame* of the object, "above" is +y there: there its surface scatters light, and only there do the
+/// angles say how much of it. In the observer's frame the photosurface of whatever comes towards the observer is so long
 /// that all of it would be seen at grazing incidence, and dark. For photosurfaces, normals are taken back to the rest
 /// frame; so both methods shade alike.
 ///
@@ -302,20 +303,24 @@ fn fine_mesh(object: &Object, shape: &Shape, appearance: &Appearance, part: &Par
 mod tests {
     use serde_json::json;
 
-    use super::super::pixel_shader::AMBIENT;
     use super::super::{PictureSize, Projection};
     use super::*;
 
-    /// A large square at `z` that faces +z, of a linear colour and an opacity.
+    /// A large square at `z` that faces +z, of a linear colour and an opacity, which it has whatever the light.
     fn square(z: f64, base_color: [f32; 4], alpha_mode: &str, double_sided: bool) -> Part {
-        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-        let corners = corners.map(|(x, y)| DVec3::new(100.0 * x, 100.0 * y, z));
-        let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap();
         let material = json!({
             "pbrMetallicRoughness": { "baseColorFactor": base_color },
             "alphaMode": alpha_mode,
             "doubleSided": double_sided,
+            "extensions": { "KHR_materials_unlit": {} },
         });
+        square_of(z, material)
+    }
+
+    fn square_of(z: f64, material: serde_json::Value) -> Part {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corners = corners.map(|(x, y)| DVec3::new(100.0 * x, 100.0 * y, z));
+        let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap();
         let material = Material::new(material, vec![]).unwrap();
         Part::new("square", mesh, Some(Arc::new(material))).unwrap()
     }
@@ -396,15 +401,32 @@ mod tests {
         }
     }
 
+    /// Linear light of a matte square of linear grey `grey` and some emission, whose normal is +z, seen along `look`.
+    fn lit(grey: f64, emission: f64, look: DVec3) -> f64 {
+        let material = json!({
+            "pbrMetallicRoughness": { "baseColorFactor": [grey, grey, grey, 1.0], "metallicFactor": 0.0 },
+            "emissiveFactor": [emission, emission, emission],
+        });
+        let [level, ..] = Color(pixel(&[square_of(0.0, material)], -look, look)).linear();
+        f64::from(level)
+    }
+
+    /// Half a step of 8 bits, where steps are largest.
+    const HALF_STEP: f64 = 0.0045;
+
     #[test]
-    fn the_lamp_is_at_the_eye() {
-        let part = square(0.0, [1.0; 4], "OPAQUE", true);
-        let look = DVec3::new(3.0, 0.0, -4.0);
-        let [level, ..] = Color(pixel(&[part], -look, look)).linear();
-        // A cosine of 0.8, to half a step of 8 bits.
-        assert!(
-            (level - (AMBIENT + (1.0 - AMBIENT) * 0.8)).abs() < 0.005,
-            "{level}"
-        );
+    fn the_lamp_is_at_the_eye_and_matte_surfaces_do_not_burn_out() {
+        let ahead = lit(1.0, 0.0, DVec3::NEG_Z);
+        assert!((0.8..0.9).contains(&ahead), "{ahead}");
+        let grey = lit(0.25, 0.0, DVec3::NEG_Z);
+        // A gloss of a hundredth at most, whatever the colour.
+        assert!((grey - 0.25 * ahead).abs() < 0.01, "{grey} {ahead}");
+        let glowing = lit(0.25, 0.5, DVec3::NEG_Z);
+        assert!((glowing - grey - 0.5).abs() < 2.0 * HALF_STEP, "{glowing}");
+        let slanted = lit(1.0, 0.0, DVec3::new(3.0, 0.0, -4.0));
+        let grazed = lit(1.0, 0.0, DVec3::new(1.0, 0.0, -1e-3));
+        // The part of the lamp goes as the cosine, but for the gloss.
+        let expected = grazed + (ahead - grazed) * 0.8;
+        assert!((slanted - expected).abs() < 0.015, "{slanted} {expected}");
     }
 }
