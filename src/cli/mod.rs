@@ -16,6 +16,7 @@ mod flight_tables;
 mod guides;
 mod input;
 mod messages;
+mod models;
 mod output;
 mod render;
 mod schema;

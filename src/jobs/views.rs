@@ -7,10 +7,12 @@ use glam::DVec3;
 
 use super::extent::{middle_of_sky, outermost};
 use super::framing::{OutsideCamera, seen_vertices};
+use super::guides::Ghost;
 use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
 use super::progress::Progress;
 use super::rendered::{EmptyView, RenderError, Rendered, ViewCost};
-use crate::pipeline::{PlacedScene, PlacedSceneError};
+use crate::mesh::Mesh;
+use crate::pipeline::{PlacedScene, PlacedSceneError, SurfaceOptions};
 use crate::render::{
     Camera, Picture, PictureOptions, Scenery, Strokes, Textures, Viewpoint, grid_places,
 };
@@ -27,6 +29,8 @@ pub(super) struct Views<'a> {
     progress: &'a dyn Progress,
     /// All objects in their rest frames, for views by rays.
     at_rest: Option<Scenery>,
+    /// Whether the observer's views are drawn by rays.
+    by_rays: bool,
     /// The first step whose photosurfaces have not been counted yet.
     next_step: usize,
     pub(super) rendered: Rendered,
@@ -51,6 +55,7 @@ impl<'a> Views<'a> {
             textures,
             progress,
             at_rest: by_rays.then(|| at_rest(placed, textures)),
+            by_rays,
             next_step: 0,
             rendered: Rendered::default(),
         }
@@ -65,6 +70,15 @@ impl<'a> Views<'a> {
 
     /// A camera outside that has everything at every step in the picture, or stands at the position `from`.
     pub(super) fn outside_camera(&self, from: Option<DVec3>) -> Result<OutsideCamera, RenderError> {
+        let cameras = self
+            .settings
+            .camera
+            .outside_cameras(from, &[self.all_framed()?])?;
+        Ok(cameras[0])
+    }
+
+    /// The positions, in the observer's frame, that one camera outside has to have in the picture for all steps.
+    pub(super) fn all_framed(&self) -> Result<Vec<DVec3>, RenderError> {
         let mut all = Vec::new();
         for step in self.steps() {
             all.extend(self.framed(step)?);
@@ -76,8 +90,7 @@ impl<'a> Views<'a> {
         if self.settings.guides.axes {
             all.push(DVec3::ZERO);
         }
-        let cameras = self.settings.camera.outside_cameras(from, &[all])?;
-        Ok(cameras[0])
+        Ok(all)
     }
 
     /// A camera outside for each step; all have the same distance, or stand at the position `from`.
@@ -98,14 +111,19 @@ impl<'a> Views<'a> {
         let moment = scene.moment(step);
         let moment = moment.ok_or(PlacedSceneError::Step { step, steps })?;
         let viewpoint = Viewpoint::Observer(&moment);
-        let (picture, cost) = match &self.at_rest {
-            Some(scenery) => self.take(scenery, &camera, viewpoint)?,
+        let (ghosts, edges) = self.ghosts(step)?;
+        let mut scenery = match self.at_rest.take() {
+            Some(at_rest) => at_rest,
             None => {
                 let mut scenery = Scenery::with_textures(self.textures);
                 self.add_photosurfaces(&mut scenery, step)?;
-                self.take(&scenery, &camera, viewpoint)?
+                scenery
             }
         };
+        scenery.set_ghosts(ghosts);
+        let (mut picture, cost) = self.take(&scenery, &camera, viewpoint)?;
+        scenery.draw(&mut picture, &camera, viewpoint, &edges);
+        self.at_rest = Some(scenery).filter(|_| self.by_rays);
         self.rendered.costs.push(cost);
         let background = self.settings.background.0;
         if picture.bytes().chunks(3).all(|pixel| pixel == background) {
@@ -126,14 +144,14 @@ impl<'a> Views<'a> {
         if let Some(marker) = self.placed.marker() {
             scenery.add_in_view(marker);
         }
-        let mut edges: Vec<Strokes<DVec3>> = Vec::new();
+        let (mut ghosts, mut edges) = (Vec::new(), Vec::new());
         for step in steps {
             self.add_photosurfaces(&mut scenery, step)?;
-            for (mesh, ghost_edges) in settings.guides.ghosts(self.placed, step) {
-                scenery.add_ghost(mesh, ghost_edges.color);
-                edges.push(ghost_edges);
-            }
+            let of_step = self.ghosts(step)?;
+            ghosts.extend(of_step.0);
+            edges.extend(of_step.1);
         }
+        scenery.set_ghosts(ghosts);
         let viewpoint = Viewpoint::Outside(outside.place);
         let (mut picture, cost) = self.take(&scenery, &outside.camera, viewpoint)?;
         self.rendered.costs.push(cost);
@@ -142,6 +160,17 @@ impl<'a> Views<'a> {
             .guides
             .draw(&mut picture, outside, &scenery, &edges, background);
         Ok(picture)
+    }
+
+    /// The ghosts of one step with their colours, and their edges.
+    fn ghosts(
+        &self,
+        step: usize,
+    ) -> Result<(Vec<(Mesh, Color)>, Vec<Strokes<DVec3>>), RenderError> {
+        let options = self.settings.surface_options;
+        let ghosts = self.settings.guides.ghosts(self.placed, step, options)?;
+        let colored = |(mesh, edges): Ghost| ((mesh, edges.color), edges);
+        Ok(ghosts.into_iter().map(colored).unzip())
     }
 
     fn steps(&self) -> Range<usize> {
@@ -156,9 +185,13 @@ impl<'a> Views<'a> {
     }
 
     /// The positions, in the observer's frame, that a camera outside has to have in the picture at one step.
-    fn framed(&self, step: usize) -> Result<Vec<DVec3>, RenderError> {
+    pub(super) fn framed(&self, step: usize) -> Result<Vec<DVec3>, RenderError> {
         let mut places = self.seen_vertices(step)?;
-        for (mesh, _) in self.settings.guides.ghosts(self.placed, step) {
+        let options = SurfaceOptions {
+            subdivide: false,
+            ..self.settings.surface_options
+        };
+        for (mesh, _) in self.settings.guides.ghosts(self.placed, step, options)? {
             places.extend_from_slice(mesh.positions());
         }
         Ok(outermost(places))

@@ -12,7 +12,7 @@ use super::shape_placement::SmoothHit;
 use super::sphere::Ball;
 use super::turned::Turned;
 use crate::mesh::Mesh;
-use crate::spacetime::{WorldLine, unit};
+use crate::spacetime::{ViewModel, WorldLine, unit};
 
 /// What has no corners is within a ball so much larger, roundings and all.
 const RADIUS_MARGIN: f64 = 1.0 + 1e-9;
@@ -60,9 +60,9 @@ impl Geometry {
 #[derive(Clone, Copy)]
 pub(super) enum Stands {
     /// Its rest frame.
-    AtRest(WorldLine),
+    AtRest(WorldLine, ViewModel),
     /// The observer's, mapped from its rest frame.
-    Mapped(WorldLine),
+    Mapped(WorldLine, ViewModel),
     /// The observer's frame, as it is.
     InView,
 }
@@ -167,7 +167,7 @@ impl Body {
                 },
                 to_eye,
             },
-            doppler: ray_rest.doppler(),
+            doppler: ray_rest.doppler,
             texture,
             vertex_color,
             triangle,
@@ -189,7 +189,7 @@ impl Body {
     }
 
     fn is_mapped(&self) -> bool {
-        matches!(self.stands, Stands::Mapped(_))
+        matches!(self.stands, Stands::Mapped(..))
     }
 }
 

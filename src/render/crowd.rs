@@ -12,7 +12,7 @@ use super::bounds::Bounds;
 use super::cone::Cone;
 use super::ray::Ray;
 use super::tree::Tree;
-use crate::spacetime::WorldLine;
+use crate::spacetime::{ViewModel, WorldLine};
 
 /// A distance at rest that is turned into one that is seen and back may be rounded by this part.
 const THERE_AND_BACK: f64 = 1.0 + 4.0 * f64::EPSILON;
@@ -57,16 +57,17 @@ impl<'a> Crowd<'a> {
         let eye = viewpoint.eye();
         let mut placed = Vec::new();
         // Where each group begins and the motion of those that are at rest in it.
-        let mut starts: Vec<(usize, Option<WorldLine>)> = Vec::new();
+        let mut starts: Vec<(usize, Option<(WorldLine, ViewModel)>)> = Vec::new();
         for body in bodies {
             let aberration = match (viewpoint, body.stands) {
-                (Viewpoint::Observer(moment), Stands::AtRest(line) | Stands::Mapped(line)) => {
-                    Some(Aberration::new(moment, &line))
-                }
+                (
+                    Viewpoint::Observer(moment),
+                    Stands::AtRest(line, model) | Stands::Mapped(line, model),
+                ) => Some(Aberration::new(moment, &line, model)),
                 _ => None,
             };
             let rests = match (&aberration, body.stands) {
-                (Some(_), Stands::AtRest(line)) => Some(line),
+                (Some(_), Stands::AtRest(line, model)) => Some((line, model)),
                 _ => None,
             };
             if starts.last().is_none_or(|&(_, last)| last != rests) {

@@ -114,7 +114,7 @@ impl Scenery {
         &self.textures
     }
 
-    /// Adds a part of `object`, at rest, in the object's rest frame.
+    /// Adds a part of `object`, at rest, in the object's rest frame, to be shown under the object's model.
     ///
     /// Spheres, cylinders, rods and cones are met as the surfaces that they are, whatever facets their parts have. A torus
     /// gets facets within a ten thousandth of its size, unless it has a resolution of its own: the
@@ -130,11 +130,11 @@ impl Scenery {
             },
             _ => Geometry::Mesh(Caster::new(part.mesh().clone())),
         };
-        let stands = Stands::AtRest(object.world_line());
+        let stands = Stands::AtRest(object.world_line(), object.view_model());
         self.add(geometry, part.material.as_ref(), &object.name, stands);
     }
 
-    /// Adds a photosurface of `object`, in the observer's frame with the observer at the origin.
+    /// Adds a photosurface of `object`, or what is shown of it under another model, in the observer's frame with the observer at the origin.
     pub fn add_photosurface(
         &mut self,
         object: &Object,
@@ -142,7 +142,7 @@ impl Scenery {
         material: Option<&Arc<Material>>,
     ) {
         let geometry = Geometry::Mesh(Caster::new(mesh.clone()));
-        let stands = Stands::Mapped(object.world_line());
+        let stands = Stands::Mapped(object.world_line(), object.view_model());
         self.add(geometry, material, &object.name, stands);
     }
 
@@ -152,15 +152,17 @@ impl Scenery {
         self.add(geometry, part.material.as_ref(), &part.name, Stands::InView);
     }
 
-    /// Adds a thing that stands in the observer's frame and is only hinted at, in one colour.
-    pub fn add_ghost(&mut self, mesh: Mesh, color: Color) {
-        let paint = Paint::plain();
-        let body = Body {
-            geometry: Geometry::Mesh(Caster::new(mesh)),
-            paint,
-            stands: Stands::InView,
+    /// Sets all things that stand in the observer's frame and are only hinted at, each in one colour.
+    pub fn set_ghosts(&mut self, ghosts: impl IntoIterator<Item = (Mesh, Color)>) {
+        let ghost = |(mesh, color): (Mesh, Color)| {
+            let body = Body {
+                geometry: Geometry::Mesh(Caster::new(mesh)),
+                paint: Paint::plain(),
+                stands: Stands::InView,
+            };
+            (body, color.linear().into())
         };
-        self.ghosts.push((body, color.linear().into()));
+        self.ghosts = ghosts.into_iter().map(ghost).collect();
     }
 
     fn add(

@@ -11,7 +11,7 @@ use super::forms::{self, FromObject, Keyed, VelocityForm};
 use super::{InvalidScene, Place, Scale, Tolerance};
 use crate::material::Model;
 use crate::shape::{Appearance, Color, Shape};
-use crate::spacetime::{Event, Rotation, Velocity, WorldLine};
+use crate::spacetime::{Event, Rotation, Velocity, ViewModel, WorldLine};
 
 /// A thing in uniform motion.
 ///
@@ -35,6 +35,8 @@ pub struct Object {
     pub velocity: Velocity,
     /// How far its photosurface may be from the true one, if not as far as the scene says.
     pub tolerance: Option<Tolerance>,
+    /// Which effects of special relativity its shape is shown with; if absent, those that the scene file says, or both.
+    pub model: Option<ViewModel>,
 }
 
 /// Where the geometry of an object comes from.
@@ -59,6 +61,7 @@ impl Object {
             scale: Scale::default(),
             velocity: Velocity::ZERO,
             tolerance: None,
+            model: None,
         }
     }
 
@@ -68,6 +71,11 @@ impl Object {
             origin: Event::new(0.0, self.position.get()),
             velocity: self.velocity,
         }
+    }
+
+    /// Which effects of special relativity its shape is shown with.
+    pub fn view_model(&self) -> ViewModel {
+        self.model.unwrap_or_default()
     }
 
     /// From the coordinates of the model to the rest frame, origin at the object's origin.
@@ -117,6 +125,8 @@ struct ObjectFields {
     velocity: Velocity,
     /// How far this object's photosurface may be from the true one; as far as the scene says if absent.
     tolerance: Option<Tolerance>,
+    /// Which effects of special relativity this object's shape is shown with; those that the scene says if absent.
+    model: Option<ViewModel>,
 }
 
 impl TryFrom<FromObject<ObjectFields>> for Object {
@@ -153,6 +163,7 @@ impl TryFrom<FromObject<ObjectFields>> for Object {
             scale: fields.scale,
             velocity: fields.velocity,
             tolerance: fields.tolerance,
+            model: fields.model,
         })
     }
 }

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::forms::{FromObject, Keyed, Steps};
 use super::observer::{self, ObserverFields};
 use super::{Attributes, InvalidScene, Object, Observer, Tolerance, Units};
-use crate::spacetime::{Flight, Moment};
+use crate::spacetime::{Flight, Moment, ViewModel};
 
 /// A scene: an observer, objects, and the steps at which the observer looks.
 ///
@@ -109,6 +109,37 @@ impl Scene {
         self
     }
 
+    /// The scene with all objects shown under this model, whatever they had.
+    #[must_use]
+    pub fn with_model_for_all(mut self, model: ViewModel) -> Self {
+        for object in &mut self.objects {
+            object.model = Some(model);
+        }
+        self
+    }
+
+    /// The scene with all objects under each of these models, whatever they had, one model after the other; each object has
+    /// the name of the model behind its own, as `ball_delayed`.
+    ///
+    /// # Errors
+    ///
+    /// No model, a model that is given twice, or an object that has such a name already.
+    pub fn with_each_model(self, models: &[ViewModel]) -> Result<Self, InvalidScene> {
+        let of_model = |&model: &ViewModel| {
+            self.objects.iter().map(move |object| Object {
+                name: format!("{}_{model}", object.name),
+                model: Some(model),
+                ..object.clone()
+            })
+        };
+        let objects: Vec<Object> = models.iter().flat_map(of_model).collect();
+        let checked = Self::new(self.observer.clone(), objects)?;
+        Ok(Self {
+            objects: checked.objects,
+            ..self
+        })
+    }
+
     /// The scene with these attributes asked for, and no others.
     #[must_use]
     pub fn with_attributes(mut self, attributes: Attributes) -> Self {
@@ -188,6 +219,9 @@ struct SceneFields {
     /// How far photosurfaces may be from the true ones; a thousandth of their diagonal if absent.
     #[serde(default)]
     tolerance: Tolerance,
+    /// Which effects of special relativity shapes are shown with; both, as `seen`, if absent.
+    #[serde(default)]
+    model: ViewModel,
     /// What is computed and written for every vertex beside its place; nothing if absent.
     #[serde(default)]
     attributes: Attributes,
@@ -199,7 +233,11 @@ impl TryFrom<FromObject<SceneFields>> for Scene {
     fn try_from(FromObject(fields): FromObject<SceneFields>) -> Result<Self, InvalidScene> {
         let units = fields.units.map(|FromObject(units)| units);
         let observer = fields.observer.observer(units)?;
-        let scene = Self::new(observer, fields.objects)?.with_steps(fields.steps.0)?;
+        let mut objects = fields.objects;
+        for object in &mut objects {
+            object.model.get_or_insert(fields.model);
+        }
+        let scene = Self::new(observer, objects)?.with_steps(fields.steps.0)?;
         Ok(Self {
             title: fields.title,
             units,
