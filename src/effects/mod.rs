@@ -5,11 +5,19 @@
 
 mod cie_1931;
 mod color;
+mod color_table;
+mod doppler;
 mod gamut;
+mod planckian;
 mod ramp;
+mod seen_light;
 mod spectrum;
+mod temperature;
 
 pub(crate) use color::{byte_of_linear, linear_of_byte, linear_of_srgb};
+pub use doppler::{Beyond, Doppler, Spectrum};
 pub use gamut::{luminance, tone, within_gamut};
 pub use ramp::{RAMP_OCTAVES, ramp_color};
-pub use spectrum::{Daylight, Reflectance, TemperatureError, black_body_color};
+pub use seen_light::{Lamplight, SeenLight};
+pub use spectrum::{Daylight, Reflectance, black_body_color};
+pub use temperature::{Temperature, TemperatureError};

@@ -97,6 +97,11 @@ impl Aberration {
         }
     }
 
+    /// The Doppler factor of what is seen in the unit direction `seen`: frequency seen over frequency emitted.
+    pub(super) fn doppler(&self, seen: DVec3) -> f64 {
+        1.0 / self.light(seen).stretch
+    }
+
     /// The part of the observer's sky that a ball takes up, given in the rest frame.
     pub(super) fn cone(&self, center: DVec3, radius: f64) -> Cone {
         let boosted_to_observer = self.observer_to_boosted.transpose();
@@ -235,6 +240,26 @@ mod tests {
                 let (a, b) = (seen.truncate(), ray.direction.truncate());
                 assert!(a.perp_dot(b).abs() <= 4.0 * f64::EPSILON * b.length().max(1e-300));
             }
+        }
+    }
+
+    /// What is seen within `acos(beta)` of the direction of motion is half of the sky; light is unshifted on the ring at
+    /// `acos((1 - 1 / gamma) / beta)`. Angles in degrees.
+    #[test]
+    fn half_of_the_sky_is_ahead_and_a_ring_is_unshifted() {
+        for (beta, unshifted) in [(0.5, 74.4577), (0.9, 51.1864), (0.99, 29.8181)] {
+            let velocity = Velocity::from_beta(beta, DVec3::NEG_Z).unwrap();
+            let observer = line(0.0, DVec3::ZERO, velocity);
+            let thing = line(0.0, DVec3::ZERO, Velocity::ZERO);
+            let aberration = Aberration::new(&observer.moment(0.0), &thing);
+            let at = |angle: f64| DVec3::new(0.6 * angle.sin(), 0.8 * angle.sin(), -angle.cos());
+            let half = aberration.ray(at(beta.acos())).direction;
+            assert!(half.z.abs() < 1e-14, "{beta}: {half}");
+            let ring = at(f64::to_radians(unshifted));
+            assert!((aberration.doppler(ring) - 1.0).abs() < 1e-5, "{beta}");
+            assert_eq!(aberration.doppler(ring), aberration.ray(ring).doppler());
+            let exact = at(((1.0 - 1.0 / velocity.gamma()) / beta).acos());
+            assert!((aberration.doppler(exact) - 1.0).abs() < 1e-14, "{beta}");
         }
     }
 

@@ -11,6 +11,7 @@ use super::shape_placement::SmoothHit;
 use super::sphere::Ball;
 use super::turned::Turned;
 use crate::mesh::Mesh;
+use crate::scene::Emission;
 use crate::spacetime::{WorldLine, unit};
 
 /// What has no corners is within a ball so much larger, roundings and all.
@@ -19,6 +20,8 @@ const RADIUS_MARGIN: f64 = 1.0 + 1e-9;
 pub(super) struct Body {
     pub(super) geometry: Geometry,
     pub(super) paint: Paint,
+    /// Its own light, in place of its paint.
+    pub(super) emission: Option<Emission>,
     pub(super) stands: Stands,
 }
 
@@ -60,8 +63,8 @@ impl Geometry {
 pub(super) enum Stands {
     /// Its rest frame.
     AtRest(WorldLine),
-    /// The observer's, mapped from its rest frame.
-    Mapped(WorldLine),
+    /// The observer's, mapped from its rest frame as that observer sees it.
+    Mapped(Aberration),
     /// The observer's frame, as it is.
     InView,
 }
@@ -86,6 +89,7 @@ pub(super) struct Hit<'a> {
     /// The number of the body that is hit.
     pub(super) body: usize,
     pub(super) paint: &'a Paint,
+    pub(super) emission: Option<Emission>,
     /// From the eye, as it is seen.
     pub(super) distance: f64,
     /// Of the angle between the ray and the normal on the side that is hit, from 0 to 1, in the rest frame of the body;
@@ -150,6 +154,7 @@ impl Body {
         Hit {
             body: number,
             paint: &self.paint,
+            emission: self.emission,
             distance: hit.distance / ray.stretch,
             cosine: cosine.abs().min(1.0),
             doppler: ray_rest.doppler(),

@@ -15,6 +15,7 @@ mod crowd;
 mod lettering;
 mod paint;
 mod picture;
+mod picture_effects;
 mod pixel_shader;
 mod ray;
 mod scenery;
@@ -32,6 +33,7 @@ pub use camera::{Camera, CameraError, MAX_PICTURE_SIDE, PictureSize, Projection}
 pub(crate) use lettering::FONT;
 pub use lettering::lettering_width;
 pub use picture::Picture;
+pub use picture_effects::PictureEffects;
 pub(crate) use scenery::grid_places;
 pub use scenery::{PictureOptions, Scenery};
 pub use stroke::Strokes;

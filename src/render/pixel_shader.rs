@@ -2,9 +2,10 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use super::Camera;
 use super::body::Hit;
 use super::crowd::Crowd;
+use super::{Camera, PictureEffects};
+use crate::effects::luminance;
 
 /// How bright a surface is that the lamp only grazes.
 pub(super) const AMBIENT: f32 = 0.25;
@@ -38,6 +39,19 @@ pub(super) struct PixelShader<'a> {
     pub(super) background: Vec3,
     /// The colour of wires, and how they come to be on the picture.
     pub(super) wires: Option<(Vec3, &'a Camera)>,
+    pub(super) effects: Option<&'a PictureEffects>,
+}
+
+/// What comes along one ray.
+struct Gathered {
+    /// The light of surfaces, if there are no effects.
+    light: Vec3,
+    /// With effects, before the exposure.
+    strong: DVec3,
+    /// The light of the background.
+    behind: Vec3,
+    /// How far away the first surface is.
+    first: f64,
 }
 
 impl PixelShader<'_> {
@@ -71,9 +85,27 @@ impl PixelShader<'_> {
         light
     }
 
+    /// The luminance of the surfaces that are seen in a direction, before the exposure, if there are some.
+    pub(super) fn luminance(&self, seen: DVec3) -> Option<f64> {
+        let gathered = self.gathered(DVec2::ZERO, seen);
+        let light = gathered.strong + gathered.light.as_dvec3();
+        (gathered.first < f64::MAX).then(|| luminance(light).max(0.0))
+    }
+
     /// Without ghosts, and how far away the first surface is.
     fn solid_light(&self, place: DVec2, seen: DVec3) -> (Vec3, f64) {
+        let gathered = self.gathered(place, seen);
+        let light = match self.effects {
+            Some(effects) => effects.shown(gathered.strong),
+            None => gathered.light,
+        };
+        (light + gathered.behind, gathered.first)
+    }
+
+    fn gathered(&self, place: DVec2, seen: DVec3) -> Gathered {
         let mut light = Vec3::ZERO;
+        let mut strong = DVec3::ZERO;
+        let mut behind = Vec3::ZERO;
         let mut clearness = 1.0;
         let mut beyond = 0.0;
         let mut first = f64::MAX;
@@ -82,33 +114,56 @@ impl PixelShader<'_> {
                 .crowd
                 .nearest(seen, beyond, f64::MAX, self.wires.is_some());
             let Some(hit) = nearest else {
-                return (light + self.background * clearness, first);
+                behind = self.background * clearness;
+                break;
             };
-            let (color, opacity) = self.surface(place, &hit);
+            let (color, opacity, wire) = self.surface(place, &hit);
             if opacity > 0.0 {
                 first = first.min(hit.distance);
             }
-            light += color * (brightness(&hit) * opacity * clearness);
+            let bright = |color: DVec3| color * f64::from(brightness(&hit));
+            match self.effects {
+                None => {
+                    let color = wire.map_or(color, |wire| color.lerp(wire, WIRE));
+                    light += color * (brightness(&hit) * opacity * clearness);
+                }
+                Some(effects) => {
+                    let doppler = self.crowd.doppler(&hit, seen);
+                    let seen = match hit.emission {
+                        Some(emission) => effects.of_black_body(emission, doppler),
+                        None => bright(effects.of_surface(color, doppler)),
+                    };
+                    let seen = wire.map_or(seen, |wire| {
+                        seen.lerp(bright(wire.as_dvec3()), f64::from(WIRE))
+                    });
+                    strong += seen * f64::from(opacity * clearness);
+                }
+            }
             clearness *= 1.0 - opacity;
             if clearness < OPAQUE {
                 break;
             }
             beyond = hit.distance * STEP_BEHIND;
         }
-        (light, first)
+        Gathered {
+            light,
+            strong,
+            behind,
+            first,
+        }
     }
 
-    /// Colour and opacity of what is hit, with the wires on it.
-    fn surface(&self, place: DVec2, hit: &Hit) -> (Vec3, f32) {
+    /// Colour and opacity of what is hit, and the colour of a wire on it.
+    fn surface(&self, place: DVec2, hit: &Hit) -> (Vec3, f32, Option<Vec3>) {
         let (color, opacity) = hit.paint.color_at(hit.texture, hit.vertex_color);
         let (Some((wire, camera)), Some(triangle)) = (self.wires, hit.triangle) else {
-            return (color, opacity);
+            return (color, opacity, None);
         };
         let corners = triangle.map(|corner| corner - self.crowd.eye());
         match is_on_edge(camera, corners, place) {
             // Not opaque: where triangles are smaller than pixels all would be wire.
-            true => (color.lerp(wire, WIRE), opacity.max(WIRE)),
-            false => (color, opacity),
+            true => (color, opacity.max(WIRE), Some(wire)),
+            false => (color, opacity, None),
         }
     }
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
+use super::aberration::Aberration;
 use super::body::{Body, Geometry, Stands};
 use super::caster::Caster;
 use super::crowd::Crowd;
@@ -14,11 +15,12 @@ use super::picture::{Picture, encoded};
 use super::pixel_shader::PixelShader;
 use super::sphere::Ball;
 use super::turned::Turned;
-use super::{Camera, Strokes, Textures, Viewpoint};
+use super::{Camera, PictureEffects, Strokes, Textures, Viewpoint};
 use crate::material::{Material, Part};
 use crate::mesh::Mesh;
-use crate::scene::{Object, Source};
+use crate::scene::{Effects, Emission, Object, Source};
 use crate::shape::{Appearance, Color, Shape};
+use crate::spacetime::Moment;
 
 /// How far facets of a round shape are from it, as a part of its size: less than a tenth of a pixel where it fills
 /// a picture 1000 pixels wide.
@@ -39,6 +41,12 @@ const FACETS: f64 = 1e-4;
 /// much of it. In the observer's frame the photosurface of whatever comes towards the observer is so long
 /// that all of it would be seen at grazing incidence, and dark. For photosurfaces, normals are taken back to the rest
 /// frame; so both methods shade alike.
+///
+/// # Effects
+///
+/// With [`Scenery::set_effects`], or with black bodies, the light of surfaces has an exposure, and what is brighter than a
+/// screen can show is compressed; the background stays as it is. Photosurfaces have the colours that the observer sees, from
+/// outside too; what stands in view keeps its own.
 ///
 /// # Example
 ///
@@ -70,6 +78,7 @@ pub struct Scenery {
     /// Each with its linear colour.
     ghosts: Vec<(Body, Vec3)>,
     textures: Textures,
+    effects: Option<PictureEffects>,
 }
 
 /// How a picture is made.
@@ -113,6 +122,11 @@ impl Scenery {
         &self.textures
     }
 
+    /// Shows these effects.
+    pub fn set_effects(&mut self, effects: PictureEffects) {
+        self.effects = Some(effects);
+    }
+
     /// Adds a part of `object`, at rest, in the object's rest frame.
     ///
     /// Spheres, cylinders, rods and cones are met as the surfaces that they are, whatever facets their parts have. A torus
@@ -131,18 +145,22 @@ impl Scenery {
         };
         let stands = Stands::AtRest(object.world_line());
         self.add(geometry, part.material.as_ref(), &object.name, stands);
+        self.glow(object.emission);
     }
 
-    /// Adds a photosurface of `object`, in the observer's frame with the observer at the origin.
+    /// Adds a photosurface of `object` as the observer of `moment` sees it, in the observer's frame with the observer at the
+    /// origin.
     pub fn add_photosurface(
         &mut self,
         object: &Object,
+        moment: &Moment,
         mesh: &Mesh,
         material: Option<&Arc<Material>>,
     ) {
         let geometry = Geometry::Mesh(Caster::new(mesh.clone()));
-        let stands = Stands::Mapped(object.world_line());
+        let stands = Stands::Mapped(Aberration::new(moment, &object.world_line()));
         self.add(geometry, material, &object.name, stands);
+        self.glow(object.emission);
     }
 
     /// Adds a thing as it stands in the observer's frame.
@@ -157,6 +175,7 @@ impl Scenery {
         let body = Body {
             geometry: Geometry::Mesh(Caster::new(mesh)),
             paint,
+            emission: None,
             stands: Stands::InView,
         };
         self.ghosts.push((body, color.linear().into()));
@@ -172,8 +191,18 @@ impl Scenery {
         self.bodies.push(Body {
             geometry,
             paint: Paint::new(material, object, &self.textures),
+            emission: None,
             stands,
         });
+    }
+
+    /// Gives the body that was added last its own light, if it has one.
+    fn glow(&mut self, emission: Option<Emission>) {
+        if let (Some(_), Some(body)) = (emission, self.bodies.last_mut()) {
+            body.emission = emission;
+            self.effects
+                .get_or_insert_with(|| PictureEffects::new(Effects::default()));
+        }
     }
 
     /// The picture that `camera` takes.
@@ -238,20 +267,39 @@ impl Scenery {
         light.collect()
     }
 
+    /// The luminances of the surfaces that are seen in these directions, before the exposure; of those where there are
+    /// some.
+    pub(crate) fn luminances(&self, viewpoint: Viewpoint, directions: &[DVec3]) -> Vec<f64> {
+        let shader = self.shader(viewpoint, Color([0; 3]), None);
+        let seen = directions.par_iter();
+        seen.filter_map(|&seen| shader.luminance(seen)).collect()
+    }
+
     fn pixel_shader<'a>(
         &'a self,
         camera: &'a Camera,
         viewpoint: Viewpoint,
         options: PictureOptions,
     ) -> PixelShader<'a> {
+        let wires = options
+            .wireframe
+            .map(|color| (color.linear().into(), camera));
+        self.shader(viewpoint, options.background, wires)
+    }
+
+    fn shader<'a>(
+        &'a self,
+        viewpoint: Viewpoint,
+        background: Color,
+        wires: Option<(Vec3, &'a Camera)>,
+    ) -> PixelShader<'a> {
         PixelShader {
             crowd: Crowd::new(self.bodies.iter(), viewpoint),
             ghosts: Crowd::new(self.ghosts.iter().map(|(body, _)| body), viewpoint),
             ghost_colors: self.ghosts.iter().map(|&(_, color)| color).collect(),
-            background: options.background.linear().into(),
-            wires: options
-                .wireframe
-                .map(|color| (color.linear().into(), camera)),
+            background: background.linear().into(),
+            wires,
+            effects: self.effects.as_ref(),
         }
     }
 

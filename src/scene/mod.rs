@@ -4,6 +4,8 @@
 
 mod attributes;
 mod built_in;
+mod effects;
+mod emission;
 mod error;
 mod flight;
 mod flight_plan;
@@ -22,6 +24,8 @@ mod units;
 
 pub use attributes::{Attribute, Attributes, UnknownAttribute};
 pub use built_in::{BUILT_IN_SCENES, BuiltInScene};
+pub use effects::{Effects, EffectsError, Exposure, Stops};
+pub use emission::{Emission, EmissionError};
 pub use error::InvalidScene;
 pub use flight_plan::FlightPlan;
 pub use json::SceneError;

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::forms::{self, FromObject, Keyed, VelocityForm};
-use super::{InvalidScene, Place, Scale, Tolerance};
+use super::{Emission, InvalidScene, Place, Scale, Tolerance};
 use crate::material::Model;
 use crate::shape::{Appearance, Color, Shape};
 use crate::spacetime::{Event, Rotation, Velocity, WorldLine};
@@ -35,6 +35,8 @@ pub struct Object {
     pub velocity: Velocity,
     /// How far its photosurface may be from the true one, if not as far as the scene says.
     pub tolerance: Option<Tolerance>,
+    /// Its own light, if it is a black body; pictures and colours of vertices show it in place of its material.
+    pub emission: Option<Emission>,
 }
 
 /// Where the geometry of an object comes from.
@@ -59,6 +61,7 @@ impl Object {
             scale: Scale::default(),
             velocity: Velocity::ZERO,
             tolerance: None,
+            emission: None,
         }
     }
 
@@ -117,6 +120,10 @@ struct ObjectFields {
     velocity: Velocity,
     /// How far this object's photosurface may be from the true one; as far as the scene says if absent.
     tolerance: Option<Tolerance>,
+    /// Makes the object a black body, which needs no lamp; its material then has no say.
+    #[serde(default)]
+    #[schemars(with = "Option<Emission>")]
+    emission: Option<FromObject<Emission>>,
 }
 
 impl TryFrom<FromObject<ObjectFields>> for Object {
@@ -153,6 +160,7 @@ impl TryFrom<FromObject<ObjectFields>> for Object {
             scale: fields.scale,
             velocity: fields.velocity,
             tolerance: fields.tolerance,
+            emission: fields.emission.map(|FromObject(emission)| emission),
         })
     }
 }

@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use super::forms::{FromObject, Keyed, Steps};
 use super::observer::{self, ObserverFields};
-use super::{Attributes, InvalidScene, Object, Observer, Tolerance, Units};
+use super::{Attributes, Effects, InvalidScene, Object, Observer, Tolerance, Units};
 use crate::spacetime::{Flight, Moment};
 
 /// A scene: an observer, objects, and the steps at which the observer looks.
@@ -25,6 +25,7 @@ pub struct Scene {
     steps: Vec<f64>,
     tolerance: Tolerance,
     attributes: Attributes,
+    effects: Effects,
 }
 
 impl Scene {
@@ -55,6 +56,7 @@ impl Scene {
             steps: vec![0.0],
             tolerance: Tolerance::default(),
             attributes: Attributes::default(),
+            effects: Effects::default(),
         })
     }
 
@@ -119,6 +121,18 @@ impl Scene {
     /// What is asked for at every vertex.
     pub fn attributes(&self) -> Attributes {
         self.attributes
+    }
+
+    /// The scene with these effects asked for, and no others.
+    #[must_use]
+    pub fn with_effects(mut self, effects: Effects) -> Self {
+        self.effects = effects;
+        self
+    }
+
+    /// What becomes of light on its way, beside shapes.
+    pub fn effects(&self) -> Effects {
+        self.effects
     }
 
     /// How far the photosurface of an object may be from the true one.
@@ -191,6 +205,10 @@ struct SceneFields {
     /// What is computed and written for every vertex beside its place; nothing if absent.
     #[serde(default)]
     attributes: Attributes,
+    /// What becomes of light on its way, beside shapes; nothing if absent.
+    #[serde(default)]
+    #[schemars(with = "Effects")]
+    effects: Option<FromObject<Effects>>,
 }
 
 impl TryFrom<FromObject<SceneFields>> for Scene {
@@ -205,6 +223,9 @@ impl TryFrom<FromObject<SceneFields>> for Scene {
             units,
             tolerance: fields.tolerance,
             attributes: fields.attributes,
+            effects: fields
+                .effects
+                .map_or(Effects::default(), |FromObject(effects)| effects),
             ..scene
         })
     }
