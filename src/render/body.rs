@@ -12,7 +12,8 @@ use super::shape_placement::SmoothHit;
 use super::sphere::Ball;
 use super::turned::Turned;
 use crate::mesh::Mesh;
-use crate::spacetime::{ViewModel, WorldLine, unit};
+use crate::scene::Emission;
+use crate::spacetime::{Velocity, ViewModel, WorldLine, unit};
 
 /// What has no corners is within a ball so much larger, roundings and all.
 const RADIUS_MARGIN: f64 = 1.0 + 1e-9;
@@ -20,6 +21,10 @@ const RADIUS_MARGIN: f64 = 1.0 + 1e-9;
 pub(super) struct Body {
     pub(super) geometry: Geometry,
     pub(super) paint: Paint,
+    /// The name of what it is a part of.
+    pub(super) object: String,
+    /// Its own light, in place of its paint.
+    pub(super) emission: Option<Emission>,
     pub(super) stands: Stands,
 }
 
@@ -61,10 +66,32 @@ impl Geometry {
 pub(super) enum Stands {
     /// Its rest frame.
     AtRest(WorldLine, ViewModel),
-    /// The observer's, mapped from its rest frame.
-    Mapped(WorldLine, ViewModel),
+    /// The observer's, mapped from its rest frame as that observer sees it.
+    Mapped(Mapped),
     /// The observer's frame, as it is.
     InView,
+}
+
+impl Stands {
+    /// In the scene frame, of what has one.
+    pub(super) fn velocity(&self) -> Option<Velocity> {
+        match self {
+            Self::AtRest(line, _) => Some(line.velocity),
+            Self::Mapped(mapped) => Some(mapped.velocity),
+            Self::InView => None,
+        }
+    }
+}
+
+/// How a photosurface comes from what is at rest.
+#[derive(Clone, Copy)]
+pub(super) struct Mapped {
+    /// Of the observer who sees it.
+    pub(super) aberration: Aberration,
+    pub(super) velocity: Velocity,
+    pub(super) model: ViewModel,
+    /// The number of the observer's moment in its scenery.
+    pub(super) moment: usize,
 }
 
 /// Where a ray meets a body, in the frame of the body's geometry.
@@ -91,6 +118,7 @@ pub(super) struct Hit<'a> {
     /// The number of the body that is hit.
     pub(super) body: usize,
     pub(super) paint: &'a Paint,
+    pub(super) emission: Option<Emission>,
     /// From the eye, as it is seen.
     pub(super) distance: f64,
     /// Normal on the side that is hit and direction to the eye, in the rest frame of the body; where viewpoint or body has
@@ -107,10 +135,21 @@ pub(super) struct Hit<'a> {
 impl Body {
     /// The nearest hit farther than `beyond` and not as far as `limit`.
     pub(super) fn cast(&self, ray: &Ray, beyond: f64, limit: f64) -> Option<BodyHit> {
+        self.meet(ray, beyond, limit, self.paint.double_sided)
+    }
+
+    /// The same, with back sides of triangles if `both_sides`.
+    pub(super) fn meet(
+        &self,
+        ray: &Ray,
+        beyond: f64,
+        limit: f64,
+        both_sides: bool,
+    ) -> Option<BodyHit> {
         let (origin, direction) = (ray.origin(), ray.direction());
         match &self.geometry {
             Geometry::Mesh(caster) => caster
-                .cast(ray, beyond, limit, self.paint.double_sided)
+                .cast(ray, beyond, limit, both_sides)
                 .map(BodyHit::Mesh),
             Geometry::Ball(ball) => ball
                 .cast(origin, direction, beyond, limit)
@@ -158,6 +197,7 @@ impl Body {
         Hit {
             body: number,
             paint: &self.paint,
+            emission: self.emission,
             distance: hit.distance() / ray.stretch,
             facing: Facing {
                 normal: if normal.dot(to_eye) < 0.0 {
@@ -172,6 +212,19 @@ impl Body {
             vertex_color,
             triangle,
         }
+    }
+
+    /// How opaque it is where it is hit, from 0 to 1.
+    pub(super) fn opacity(&self, hit: &BodyHit) -> f32 {
+        if self.paint.is_opaque() {
+            return 1.0;
+        }
+        let Attributes {
+            texture,
+            vertex_color,
+            ..
+        } = self.attributes(hit);
+        self.paint.opacity_at(&texture, vertex_color)
     }
 
     fn attributes(&self, hit: &BodyHit) -> Attributes {

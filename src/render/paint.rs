@@ -159,6 +159,21 @@ impl Paint {
         look
     }
 
+    /// Whether what is behind it may be seen through it everywhere.
+    pub(super) fn is_blended(&self) -> bool {
+        self.alpha_mode == AlphaMode::Blend
+    }
+
+    /// Whether nothing is seen through it anywhere.
+    pub(super) fn is_opaque(&self) -> bool {
+        self.alpha_mode == AlphaMode::Opaque
+    }
+
+    /// How opaque it is at these texture coordinates, from 0 to 1.
+    pub(super) fn opacity_at(&self, places: &TexturePlaces, vertex: Vec4) -> f32 {
+        self.opacity(self.color(places, vertex).w)
+    }
+
     fn color(&self, places: &TexturePlaces, vertex: Vec4) -> Vec4 {
         let texture = self.base_texture.as_ref();
         let picture = texture.map_or(Vec4::ONE, |texture| texture.at(places));
@@ -221,6 +236,7 @@ mod tests {
     /// Base colour and opacity.
     fn seen(paint: &Paint, place: DVec2) -> (Vec3, f32) {
         let look = paint.look(&[place; 4], Vec4::ONE);
+        assert_eq!(paint.opacity_at(&[place; 4], Vec4::ONE), look.opacity);
         (look.base_color, look.opacity)
     }
 
