@@ -9,6 +9,7 @@ mod cost;
 mod cost_output;
 mod cost_tables;
 mod drawing;
+mod effects;
 mod example;
 mod export;
 mod flight;

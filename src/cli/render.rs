@@ -16,6 +16,7 @@ use photosurface::{DVec3, PictureView, PlacedScene};
 use super::accuracy::AccuracyArgs;
 use super::args::{InputArgs, ObserverArgs};
 use super::camera::{CameraArgs, View};
+use super::effects::EffectArgs;
 use super::guides::GuideArgs;
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print};
@@ -46,6 +47,8 @@ pub(super) struct RenderArgs {
     models: ModelsArgs,
     #[command(flatten)]
     guides: GuideArgs,
+    #[command(flatten)]
+    effects: EffectArgs,
     #[command(flatten)]
     accuracy: AccuracyArgs,
     /// Where to write a .png; each step gets its own file: out_step000.png, out_step001.png, ..., and those that
@@ -96,6 +99,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     let files = settings.files(&path, steps);
     check_destinations(files.iter().cloned(), &input.files)?;
     let scene = args.models.scene(args.accuracy.scene(input.scene));
+    let scene = args.effects.scene(scene);
     let placed = PlacedScene::new(scene.clone(), input.models)?;
     settings.guides = guides.into();
     settings.surface_options = args.accuracy.wanted(Precision::Double);

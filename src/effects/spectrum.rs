@@ -20,21 +20,19 @@
 use std::sync::LazyLock;
 
 use glam::{DMat3, DVec3};
-use thiserror::Error;
 
 use super::cie_1931::{COUNT, MATCHING, wavelength};
+use super::{Beyond, Spectrum, Temperature, TemperatureError};
 
 /// Planck's second radiation constant `h c / k` in metre kelvin: *The International System of Units*, 9th edition (2019).
-const SECOND_RADIATION_CONSTANT: f64 = 6.626_070_15e-34 * 299_792_458.0 / 1.380_649e-23;
+pub(super) const SECOND_RADIATION_CONSTANT: f64 = 6.626_070_15e-34 * 299_792_458.0 / 1.380_649e-23;
 
 /// The wavelengths between which a colour says what the reflectance is, in metres.
 const KNOWN: (f64, f64) = (380e-9, 730e-9);
 
-/// The temperature of white daylight, in kelvin.
-const DAYLIGHT: f64 = 6504.0;
-
-/// Limits on the temperature of a lamp, in kelvin: colder ones are black, to the eye.
-const TEMPERATURES: std::ops::RangeInclusive<f64> = 500.0..=1e12;
+/// A wavelength is beyond those only if it is so by more than this part: products of wavelengths and Doppler factors are
+/// rounded.
+const ROUNDED: f64 = 1e-12;
 
 /// A reflectance is found when every channel is right to this.
 const FOUND: f64 = 1e-13;
@@ -45,7 +43,7 @@ const SHORTEST_WAY: f64 = 1e-4;
 const STEEPEST: f64 = 1e6;
 
 /// From the CIE's X, Y, Z to linear sRGB. Reference: IEC 61966-2-1; its primaries, and its white (0.3127, 0.3290).
-static TO_RGB: LazyLock<DMat3> = LazyLock::new(|| {
+pub(super) static TO_RGB: LazyLock<DMat3> = LazyLock::new(|| {
     let of_unit_sum = |x: f64, y: f64| DVec3::new(x, y, 1.0 - x - y);
     let primaries = DMat3::from_cols(
         of_unit_sum(0.64, 0.33),
@@ -58,7 +56,7 @@ static TO_RGB: LazyLock<DMat3> = LazyLock::new(|| {
 });
 
 /// The spectral radiance of a black body of so many kelvin at a wavelength in metres, but for a factor.
-fn planck(wavelength: f64, kelvin: f64) -> f64 {
+pub(super) fn planck(wavelength: f64, kelvin: f64) -> f64 {
     // Of size 1 in the middle of the visible.
     let size = wavelength / 560e-9;
     1.0 / (size.powi(5) * (SECOND_RADIATION_CONSTANT / (wavelength * kelvin)).exp_m1())
@@ -79,19 +77,12 @@ pub fn black_body_color(kelvin: f64) -> DVec3 {
 /// The light by which surfaces are seen: a black body, white-balanced so that at rest every surface has its own colour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Daylight {
-    kelvin: f64,
+    spectrum: Spectrum,
     /// What the eye makes of light of each wavelength, in linear sRGB over the channels of the unshifted lamp.
     eye: [DVec3; COUNT],
+    /// The same times the light of the lamp.
+    lit: [DVec3; COUNT],
 }
-
-/// Why a number is not the temperature of a lamp.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error(
-    "the temperature is {0:?} kelvin, expected {low} to {high:e}",
-    low = TEMPERATURES.start(),
-    high = TEMPERATURES.end()
-)]
-pub struct TemperatureError(f64);
 
 /// The part of the light of each wavelength that a surface sends back.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,7 +96,7 @@ pub enum Reflectance {
 impl Default for Daylight {
     /// Daylight of 6504 kelvin.
     fn default() -> Self {
-        Self::new(DAYLIGHT).expect("daylight is neither too cold nor too hot")
+        Self::of(Spectrum::default())
     }
 }
 
@@ -116,35 +107,57 @@ impl Daylight {
     ///
     /// A temperature below 500 or above 1e12 kelvin.
     pub fn new(kelvin: f64) -> Result<Self, TemperatureError> {
-        if !TEMPERATURES.contains(&kelvin) {
-            return Err(TemperatureError(kelvin));
-        }
+        Ok(Self::of(Spectrum {
+            daylight: Temperature::new(kelvin)?,
+            ..Spectrum::default()
+        }))
+    }
+
+    /// Daylight, with what is known of reflectances beyond colours.
+    pub fn of(spectrum: Spectrum) -> Self {
+        let kelvin = spectrum.daylight.kelvin();
         let mut eye = MATCHING.map(|matching| *TO_RGB * DVec3::from_array(matching));
-        let lamp = eye.iter().enumerate();
-        let lamp: DVec3 = lamp
-            .map(|(row, &eye)| eye * planck(wavelength(row), kelvin))
-            .sum();
-        for eye in &mut eye {
-            *eye /= lamp;
+        let mut lit = eye;
+        for (row, lit) in lit.iter_mut().enumerate() {
+            let wavelength = wavelength(row);
+            *lit *= spectrum.known(wavelength) * planck(wavelength, kelvin);
         }
-        Ok(Self { kelvin, eye })
+        let lamp: DVec3 = lit.iter().sum();
+        for channels in eye.iter_mut().chain(&mut lit) {
+            *channels /= lamp;
+        }
+        Self { spectrum, eye, lit }
     }
 
     /// The temperature in kelvin.
     pub fn kelvin(&self) -> f64 {
-        self.kelvin
+        self.spectrum.daylight.kelvin()
+    }
+
+    /// What the eye makes of the light of each wavelength of the table, in linear sRGB over the channels of the unshifted
+    /// lamp.
+    pub(super) fn eye(&self) -> &[DVec3; COUNT] {
+        &self.eye
     }
 
     /// The colour in which a surface is seen, in linear sRGB: its own at a Doppler factor (seen over emitted frequency) of 1.
     /// Channels may be above 1, and below 0 where no screen shows the colour.
     pub fn seen_color(&self, reflectance: &Reflectance, doppler_factor: f64) -> DVec3 {
+        let kelvin = self.kelvin() * doppler_factor;
         let rows = self.eye.iter().enumerate();
         let light = rows.map(|(row, &eye)| {
             let wavelength = wavelength(row);
-            let part = reflectance.at(wavelength * doppler_factor);
-            eye * (part * planck(wavelength, self.kelvin * doppler_factor))
+            eye * (self.part(reflectance, wavelength * doppler_factor) * planck(wavelength, kelvin))
         });
         light.sum()
+    }
+
+    /// The part of the light of a wavelength at rest that a surface sends back.
+    pub(super) fn part(&self, reflectance: &Reflectance, wavelength: f64) -> f64 {
+        match self.spectrum.known(wavelength) {
+            0.0 => 0.0,
+            known => known * reflectance.at(wavelength),
+        }
     }
 
     /// A reflectance with this colour in linear sRGB, channels from 0 to 1; others are brought there.
@@ -180,13 +193,12 @@ impl Daylight {
     fn followed(&self, mut coefficients: [f64; 3], target: DVec3) -> Option<[f64; 3]> {
         for _ in 0..NEWTON_STEPS {
             let (mut color, mut slopes) = (DVec3::ZERO, [DVec3::ZERO; 3]);
-            for (row, &eye) in self.eye.iter().enumerate() {
-                let wavelength = wavelength(row);
-                let place = place(wavelength);
+            for (row, &light) in self.lit.iter().enumerate() {
+                let place = place(wavelength(row));
                 let argument = quadratic(coefficients, place);
-                let light = eye * planck(wavelength, self.kelvin);
                 color += light * sigmoid(argument);
-                let slope = light * (0.5 / (1.0 + argument * argument).powf(1.5));
+                let size = 1.0 + argument * argument;
+                let slope = light * (0.5 / (size * size.sqrt()));
                 slopes[0] += slope * (place * place);
                 slopes[1] += slope * place;
                 slopes[2] += slope;
@@ -205,6 +217,19 @@ impl Daylight {
             }
         }
         None
+    }
+}
+
+impl Spectrum {
+    /// 0 where surfaces are dark because colours say nothing of the wavelength, 1 elsewhere.
+    fn known(&self, wavelength: f64) -> f64 {
+        let (shortest, longest) = KNOWN;
+        let is_dark = match wavelength {
+            _ if wavelength < shortest * (1.0 - ROUNDED) => self.ultraviolet,
+            _ if wavelength > longest * (1.0 + ROUNDED) => self.infrared,
+            _ => Beyond::Edge,
+        };
+        f64::from(is_dark == Beyond::Edge)
     }
 }
 
@@ -350,6 +375,38 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// With a dark infrared nothing is left of visible light that was infrared, and at rest all is as ever.
+    #[test]
+    fn what_colours_say_nothing_of_may_be_dark() {
+        let dark = |infrared, ultraviolet| {
+            Daylight::of(Spectrum {
+                infrared,
+                ultraviolet,
+                ..Spectrum::default()
+            })
+        };
+        let (edge, none) = (Beyond::Edge, Beyond::Dark);
+        let color = DVec3::new(0.6, 0.3, 0.2);
+        for (light, darkest) in [
+            (dark(none, edge), 2.03),
+            (dark(edge, none), 0.457),
+            (dark(none, none), 2.03),
+        ] {
+            for color in [color, DVec3::ONE] {
+                let reflectance = light.reflectance(color);
+                assert_near(light.seen_color(&reflectance, 1.0), color.to_array(), 1e-12);
+                assert_eq!(light.seen_color(&reflectance, darkest), DVec3::ZERO);
+            }
+        }
+        let other = dark(none, edge);
+        let reflectance = other.reflectance(color);
+        assert!(other.seen_color(&reflectance, 0.457).x > 0.0);
+        // Between the edges nothing of it is seen, but for the ends that the eye hardly sees.
+        let usual = Daylight::default();
+        let found = usual.seen_color(&usual.reflectance(color), 1.02);
+        assert_near(other.seen_color(&reflectance, 1.02), found.to_array(), 2e-3);
     }
 
     #[test]

@@ -9,6 +9,7 @@ mod diagram;
 mod diagram_plot;
 mod export;
 mod export_settings;
+mod exposure;
 mod extent;
 mod files;
 mod framing;

@@ -58,6 +58,7 @@ pub fn render<E: From<RenderError>>(
     let steps = placed.scene().steps().len();
     progress.begin(settings.rows(steps));
     let mut views = Views::new(placed, textures, settings, progress);
+    views.expose()?;
     match settings.view {
         PictureView::Observer(_) => {
             let fov = views.observer_fov_deg()?;

@@ -1,10 +1,12 @@
 //! Single views of a scene: one step as the observer sees it, or some steps from outside.
 
 use std::ops::Range;
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
 
+use super::exposure::found_exposure;
 use super::extent::{middle_of_sky, outermost};
 use super::framing::{OutsideCamera, seen_vertices};
 use super::guides::Ghost;
@@ -14,9 +16,12 @@ use super::rendered::{EmptyView, RenderError, Rendered, ViewCost};
 use crate::mesh::Mesh;
 use crate::pipeline::{PlacedScene, PlacedSceneError, SurfaceOptions};
 use crate::render::{
-    Camera, Picture, PictureOptions, Scenery, Strokes, Textures, Viewpoint, grid_places,
+    Camera, Picture, PictureEffects, PictureOptions, Scenery, Strokes, Textures, Viewpoint,
+    grid_places,
 };
+use crate::scene::Exposure;
 use crate::shape::Color;
+use crate::spacetime::Moment;
 
 /// The colour of wires, visible on light and on dark surfaces.
 const WIRE: Color = Color([0x2c, 0x3e, 0x50]);
@@ -29,8 +34,12 @@ pub(super) struct Views<'a> {
     progress: &'a dyn Progress,
     /// All objects in their rest frames, for views by rays.
     at_rest: Option<Scenery>,
+    /// What casts shadows in views of photosurfaces, if the scene has lamps.
+    occluders: Option<Arc<Scenery>>,
     /// Whether the observer's views are drawn by rays.
     by_rays: bool,
+    /// What the scene calls for, if it does.
+    effects: Option<PictureEffects>,
     /// The first step whose photosurfaces have not been counted yet.
     next_step: usize,
     pub(super) rendered: Rendered,
@@ -49,16 +58,73 @@ impl<'a> Views<'a> {
             }
             PictureView::Outside { .. } => false,
         };
+        let effects = placed.scene().effects();
+        let effects = effects.is_some().then(|| PictureEffects::new(effects));
+        let only_rays = matches!(settings.view, PictureView::Observer(PictureMethod::Rays));
+        let shows_mapped = !only_rays && !placed.scene().lamps().is_empty();
         Self {
             placed,
             settings,
             textures,
             progress,
-            at_rest: by_rays.then(|| at_rest(placed, textures)),
+            at_rest: by_rays.then(|| at_rest(placed, textures, effects.as_ref())),
+            occluders: shows_mapped.then(|| Arc::new(at_rest(placed, textures, None))),
             by_rays,
+            effects,
             next_step: 0,
             rendered: Rendered::default(),
         }
+    }
+
+    /// Finds the exposure of all views, if the scene leaves it to be found.
+    pub(super) fn expose(&mut self) -> Result<(), RenderError> {
+        let Some(effects) = &self.effects else {
+            return Ok(());
+        };
+        if self.placed.scene().effects().exposure != Exposure::Auto {
+            return Ok(());
+        }
+        let made;
+        let scenery = match &self.at_rest {
+            Some(scenery) => scenery,
+            None => {
+                made = at_rest(self.placed, self.textures, Some(effects));
+                &made
+            }
+        };
+        let stops = found_exposure(self, scenery)?;
+        let effects = effects.clone().with_exposure(stops);
+        if let Some(scenery) = &mut self.at_rest {
+            scenery.set_effects(effects.clone());
+        }
+        self.effects = Some(effects);
+        Ok(())
+    }
+
+    /// Nothing yet, with the effects that the scene calls for.
+    fn scenery(&self) -> Scenery {
+        let mut scenery = new_scenery(self.placed, self.textures, self.effects.as_ref());
+        if let Some(occluders) = &self.occluders {
+            scenery.set_occluders(occluders);
+        }
+        scenery
+    }
+
+    /// The observer's camera at one step.
+    pub(super) fn observer_camera(
+        &self,
+        fov_deg: f64,
+        places: &[DVec3],
+    ) -> Result<Camera, RenderError> {
+        let camera = self.settings.camera.for_observer(self.placed.scene());
+        Ok(camera.observer_camera(fov_deg, places)?)
+    }
+
+    /// What the observer is at one step.
+    pub(super) fn moment(&self, step: usize) -> Result<Moment, RenderError> {
+        let (scene, steps) = (self.placed.scene(), self.steps().end);
+        let moment = scene.moment(step);
+        Ok(moment.ok_or(PlacedSceneError::Step { step, steps })?)
     }
 
     /// Vertical field of view of the observer's camera, in degrees, the same at all steps.
@@ -105,17 +171,14 @@ impl<'a> Views<'a> {
     /// The observer's view at one step, with a vertical field of view in degrees.
     pub(super) fn observer(&mut self, step: usize, fov_deg: f64) -> Result<Picture, RenderError> {
         let places = self.seen_vertices(step)?;
-        let (scene, steps) = (self.placed.scene(), self.steps().end);
-        let camera = self.settings.camera.for_observer(scene);
-        let camera = camera.observer_camera(fov_deg, &places)?;
-        let moment = scene.moment(step);
-        let moment = moment.ok_or(PlacedSceneError::Step { step, steps })?;
+        let camera = self.observer_camera(fov_deg, &places)?;
+        let moment = self.moment(step)?;
         let viewpoint = Viewpoint::Observer(&moment);
         let (ghosts, edges) = self.ghosts(step)?;
         let mut scenery = match self.at_rest.take() {
             Some(at_rest) => at_rest,
             None => {
-                let mut scenery = Scenery::with_textures(self.textures);
+                let mut scenery = self.scenery();
                 self.add_photosurfaces(&mut scenery, step)?;
                 scenery
             }
@@ -140,7 +203,7 @@ impl<'a> Views<'a> {
         outside: &OutsideCamera,
     ) -> Result<Picture, RenderError> {
         let settings = self.settings;
-        let mut scenery = Scenery::with_textures(self.textures);
+        let mut scenery = self.scenery();
         if let Some(marker) = self.placed.marker() {
             scenery.add_in_view(marker);
         }
@@ -173,13 +236,13 @@ impl<'a> Views<'a> {
         Ok(ghosts.into_iter().map(colored).unzip())
     }
 
-    fn steps(&self) -> Range<usize> {
+    pub(super) fn steps(&self) -> Range<usize> {
         0..self.placed.scene().steps().len()
     }
 
     /// The seen positions of the source vertices at one step, in the observer's frame; an error if the job has been
     /// cancelled.
-    fn seen_vertices(&self, step: usize) -> Result<Vec<DVec3>, RenderError> {
+    pub(super) fn seen_vertices(&self, step: usize) -> Result<Vec<DVec3>, RenderError> {
         self.progress.advance(0)?;
         Ok(seen_vertices(self.placed, step)?)
     }
@@ -199,6 +262,7 @@ impl<'a> Views<'a> {
 
     fn add_photosurfaces(&mut self, scenery: &mut Scenery, step: usize) -> Result<(), RenderError> {
         let placed = self.placed;
+        let moment = self.moment(step)?;
         let mut objects = placed.scene().objects().iter().peekable();
         // On a sheet drawn by meshes each photosurface is in two views.
         let is_new = step >= self.next_step;
@@ -213,7 +277,7 @@ impl<'a> Views<'a> {
             let object = objects
                 .peek()
                 .expect("a photosurface is of an object of its scene");
-            scenery.add_photosurface(object, &surface.mesh, surface.material.as_ref());
+            scenery.add_photosurface(object, &moment, &surface.mesh, surface.material.as_ref());
             if is_new {
                 let facts = &surface.facts;
                 self.rendered.tally.add(facts, facts.triangles);
@@ -245,9 +309,23 @@ impl<'a> Views<'a> {
     }
 }
 
-/// All objects of a scene in their rest frames.
-fn at_rest(placed: &PlacedScene, textures: &Textures) -> Scenery {
+/// Nothing yet, in the light of the scene's lamps.
+fn new_scenery(
+    placed: &PlacedScene,
+    textures: &Textures,
+    effects: Option<&PictureEffects>,
+) -> Scenery {
     let mut scenery = Scenery::with_textures(textures);
+    if let Some(effects) = effects {
+        scenery.set_effects(effects.clone());
+    }
+    scenery.set_lamps(placed.scene());
+    scenery
+}
+
+/// All objects of a scene in their rest frames.
+fn at_rest(placed: &PlacedScene, textures: &Textures, effects: Option<&PictureEffects>) -> Scenery {
+    let mut scenery = new_scenery(placed, textures, effects);
     for (object, parts) in placed.objects() {
         for (_, part) in parts {
             scenery.add_at_rest(object, part);

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::cone::Cone;
-use crate::spacetime::{Lorentz, Moment, ViewModel, WorldLine, unit};
+use crate::spacetime::{Moment, ViewModel, WorldLine, unit};
 
 /// How light that an observer sees at one event came, for everything that moves with one velocity.
 ///
@@ -75,10 +75,7 @@ impl Aberration {
     pub(super) fn new(moment: &Moment, object: &WorldLine, model: ViewModel) -> Self {
         let rest_to_observer = moment.rest_to_observer(object.velocity);
         let relative = rest_to_observer.boost_velocity();
-        // Differences are taken of the events as they are given, before anything grows by `gamma`.
-        let start = Lorentz::boost(object.velocity).apply(moment.origin() - object.origin);
-        let way = moment.displacements_in(object.velocity);
-        let event = way.fold(start, |event, leg| event + leg);
+        let event = moment.event_at_rest_with(object);
         let gamma = relative.rapidity().cosh();
         let rapidity = if model.has_delay() {
             relative.rapidity()
@@ -203,7 +200,7 @@ mod tests {
     use glam::DQuat;
 
     use super::*;
-    use crate::spacetime::{Event, Rotation, Velocity};
+    use crate::spacetime::{Event, Lorentz, Rotation, Velocity};
 
     fn rotation(turn: DQuat) -> Rotation {
         Rotation::new(turn).unwrap()
@@ -275,6 +272,26 @@ mod tests {
                 let (a, b) = (seen.truncate(), ray.direction.truncate());
                 assert!(a.perp_dot(b).abs() <= 4.0 * f64::EPSILON * b.length().max(1e-300));
             }
+        }
+    }
+
+    /// What is seen within `acos(beta)` of the direction of motion is half of the sky; light is unshifted on the ring at
+    /// `acos((1 - 1 / gamma) / beta)`. Angles in degrees.
+    #[test]
+    fn half_of_the_sky_is_ahead_and_a_ring_is_unshifted() {
+        for (beta, unshifted) in [(0.5, 74.4577), (0.9, 51.1864), (0.99, 29.8181)] {
+            let velocity = Velocity::from_beta(beta, DVec3::NEG_Z).unwrap();
+            let observer = line(0.0, DVec3::ZERO, velocity);
+            let thing = line(0.0, DVec3::ZERO, Velocity::ZERO);
+            let aberration = Aberration::new(&observer.moment(0.0), &thing);
+            let at = |angle: f64| DVec3::new(0.6 * angle.sin(), 0.8 * angle.sin(), -angle.cos());
+            let half = aberration.ray(at(beta.acos())).direction;
+            assert!(half.z.abs() < 1e-14, "{beta}: {half}");
+            let ring = at(f64::to_radians(unshifted));
+            assert!((aberration.doppler(ring) - 1.0).abs() < 1e-5, "{beta}");
+            assert_eq!(aberration.doppler(ring), aberration.ray(ring).doppler());
+            let exact = at(((1.0 - 1.0 / velocity.gamma()) / beta).acos());
+            assert!((aberration.doppler(exact) - 1.0).abs() < 1e-14, "{beta}");
         }
     }
 

@@ -11,8 +11,9 @@ use super::body::{Body, BodyHit, Hit, Stands};
 use super::bounds::Bounds;
 use super::cone::Cone;
 use super::ray::Ray;
+use super::shading::Facing;
 use super::tree::Tree;
-use crate::spacetime::{ViewModel, WorldLine};
+use crate::spacetime::{ViewModel, WorldLine, unit};
 
 /// A distance at rest that is turned into one that is seen and back may be rounded by this part.
 const THERE_AND_BACK: f64 = 1.0 + 4.0 * f64::EPSILON;
@@ -52,6 +53,19 @@ struct Found {
     ray: RestRay,
 }
 
+/// What an observer sees of a place of a surface.
+pub(super) struct Observed<'a> {
+    pub(super) object: &'a str,
+    /// The number of the observer's moment, of those of a scenery.
+    pub(super) moment: usize,
+    /// From the observer, in the rest frame of the surface.
+    pub(super) offset_rest: DVec3,
+    /// The unit direction in which its light arrives, and how far away it is seen, where it is shown there.
+    pub(super) seen: Option<(DVec3, f64)>,
+    /// In the rest frame of the surface.
+    pub(super) facing: Facing,
+}
+
 impl<'a> Crowd<'a> {
     pub(super) fn new(bodies: impl Iterator<Item = &'a Body>, viewpoint: Viewpoint) -> Self {
         let eye = viewpoint.eye();
@@ -60,10 +74,10 @@ impl<'a> Crowd<'a> {
         let mut starts: Vec<(usize, Option<(WorldLine, ViewModel)>)> = Vec::new();
         for body in bodies {
             let aberration = match (viewpoint, body.stands) {
-                (
-                    Viewpoint::Observer(moment),
-                    Stands::AtRest(line, model) | Stands::Mapped(line, model),
-                ) => Some(Aberration::new(moment, &line, model)),
+                (Viewpoint::Observer(moment), Stands::AtRest(line, model)) => {
+                    Some(Aberration::new(moment, &line, model))
+                }
+                (Viewpoint::Observer(_), Stands::Mapped(mapped)) => Some(mapped.aberration),
                 _ => None,
             };
             let rests = match (&aberration, body.stands) {
@@ -118,7 +132,7 @@ impl<'a> Crowd<'a> {
             else {
                 return;
             };
-            let distance = hit.distance / path.ray.stretch;
+            let distance = hit.distance() / path.ray.stretch;
             let is_nearer = found.as_ref().is_none_or(|found| {
                 distance < found.distance || (distance == found.distance && body < found.body)
             });
@@ -143,7 +157,7 @@ impl<'a> Crowd<'a> {
                 let body = group.first + number as usize;
                 if let Some(hit) = self.bodies[body].0.cast(&path.prepared, 0.0, f64::MAX) {
                     let found = Found {
-                        distance: hit.distance / path.ray.stretch,
+                        distance: hit.distance() / path.ray.stretch,
                         body,
                         hit,
                         ray: path.ray,
@@ -155,6 +169,63 @@ impl<'a> Crowd<'a> {
         });
         all.sort_unstable_by_key(|hit| hit.body);
         all
+    }
+
+    /// Frequency seen over frequency emitted of a hit in the direction `seen`, for the observer: of photosurfaces that are
+    /// seen from outside too. `None` of what has no motion.
+    pub(super) fn doppler(&self, hit: &Hit, seen: DVec3) -> Option<f64> {
+        let (body, aberration) = &self.bodies[hit.body];
+        match (aberration, body.stands) {
+            (Some(_), _) => Some(hit.doppler),
+            (None, Stands::Mapped(mapped)) => {
+                let place = self.eye + seen * hit.distance;
+                Some(unit(place).map_or(1.0, |seen| mapped.aberration.ray(seen).doppler))
+            }
+            (None, Stands::AtRest(..) | Stands::InView) => None,
+        }
+    }
+
+    /// Of a hit in the direction `seen`: what the observer sees of that place, also from outside. `None` of what has no
+    /// observer.
+    pub(super) fn observed(&self, hit: &Hit, seen: DVec3) -> Option<Observed<'a>> {
+        let &(body, aberration) = &self.bodies[hit.body];
+        let object = body.object.as_str();
+        if let Some(aberration) = aberration {
+            let ray = aberration.ray(seen);
+            let model = match body.stands {
+                Stands::AtRest(_, model) => model,
+                Stands::Mapped(mapped) => mapped.model,
+                Stands::InView => return None,
+            };
+            return Some(Observed {
+                object,
+                moment: 0,
+                offset_rest: ray.direction * (ray.stretch * hit.distance),
+                seen: (model == ViewModel::Seen).then_some((seen, hit.distance)),
+                facing: hit.facing,
+            });
+        }
+        let Stands::Mapped(mapped) = body.stands else {
+            return None;
+        };
+        let place = self.eye + seen * hit.distance;
+        let distance = place.length();
+        let from_observer = unit(place)?;
+        let ray = mapped.aberration.ray(from_observer);
+        let normal = mapped
+            .aberration
+            .normal_at_rest(hit.facing.normal, from_observer);
+        let to_eye = -ray.direction;
+        Some(Observed {
+            object,
+            moment: mapped.moment,
+            offset_rest: ray.direction * (ray.stretch * distance),
+            seen: (mapped.model == ViewModel::Seen).then_some((from_observer, distance)),
+            facing: Facing {
+                normal: normal.unwrap_or(to_eye),
+                to_eye,
+            },
+        })
     }
 
     /// Visits the groups that may be seen in a direction.
@@ -237,7 +308,7 @@ impl Group {
         let mut nearest: Option<(usize, BodyHit)> = None;
         self.tree.along(ray, limit, |number| {
             let body = self.first + number as usize;
-            let farthest = nearest.as_ref().map_or(limit, |(_, hit)| hit.distance);
+            let farthest = nearest.as_ref().map_or(limit, |(_, hit)| hit.distance());
             let is_first = nearest.as_ref().is_some_and(|&(first, _)| body < first);
             // Including what is as far as what was found.
             let reach = if is_first {
@@ -247,7 +318,7 @@ impl Group {
             };
             match bodies[body].0.cast(ray, beyond, reach) {
                 Some(hit) => {
-                    let distance = hit.distance;
+                    let distance = hit.distance();
                     nearest = Some((body, hit));
                     distance
                 }
@@ -340,7 +411,7 @@ mod tests {
                     }
                 }
                 let found = crowd.nearest(seen, 0.0, f64::MAX, false);
-                let told = |hit: Hit| (hit.distance, hit.cosine, hit.doppler, hit.texture);
+                let told = |hit: Hit| (hit.distance, hit.facing, hit.doppler, hit.texture);
                 assert_eq!(found.map(told), nearest.map(told), "{name} {seen}");
             }
         }
@@ -366,7 +437,7 @@ mod tests {
             unreachable!()
         };
         let model = shape.model(appearance).unwrap();
-        mapped.add_photosurface(&cube.objects()[0], model.parts[0].mesh(), None);
+        mapped.add_photosurface(&cube.objects()[0], &moment, model.parts[0].mesh(), None);
         let balls = scenery(&ball);
         for (scenery, is_ball) in [(&balls, true), (&cubes, false), (&mapped, false)] {
             let observer = Viewpoint::Observer(&moment);
@@ -382,17 +453,63 @@ mod tests {
                     };
                     assert!((hit.doppler - doppler).abs() < 1e-14 * doppler, "{seen}");
                     // At rest, all of a ball is seen head-on from its middle.
-                    assert!(!is_ball || (hit.cosine - 1.0).abs() < 1e-14, "{seen}");
+                    assert!(
+                        !is_ball || (hit.facing.eye_cosine() - 1.0).abs() < 1e-14,
+                        "{seen}"
+                    );
                 }
                 // Straight ahead and behind, whatever the frame.
-                for (seen, doppler) in [(DVec3::NEG_Z, 3.0), (DVec3::Z, 1.0 / 3.0)] {
+                for (seen, for_observer) in [(DVec3::NEG_Z, 3.0), (DVec3::Z, 1.0 / 3.0)] {
                     let hit = crowd.nearest(seen, 0.0, f64::MAX, false).unwrap();
-                    let doppler = if is_moving { doppler } else { 1.0 };
+                    let doppler = if is_moving { for_observer } else { 1.0 };
                     assert!((hit.doppler - doppler).abs() < 1e-14);
-                    assert!((hit.cosine - 1.0).abs() < 1e-14);
+                    assert!((hit.facing.eye_cosine() - 1.0).abs() < 1e-14);
                     assert_eq!(hit.body, 0);
+                    // From the middle too a photosurface is as the observer sees it.
+                    let is_mapped = matches!(scenery.bodies[0].stands, Stands::Mapped(_));
+                    let shown = crowd.doppler(&hit, seen);
+                    let expected = (is_moving || is_mapped).then_some(for_observer);
+                    assert_eq!(shown.is_some(), expected.is_some());
+                    assert!((shown.unwrap_or(1.0) - expected.unwrap_or(1.0)).abs() < 1e-14);
                 }
             }
+        }
+    }
+
+    /// The energy density of the light of a glowing ball, of all wavelengths together: the fourth power of the Doppler
+    /// factor over the part of the observer's sky that it takes up. In its rest frame the sums of its light over directions
+    /// are known in closed form, and what moves along the unit vector `n` sees of them
+    /// `gamma^2 (E - 2 beta P cos(theta) + beta^2 T)`.
+    #[test]
+    fn a_glowing_ball_gives_as_much_light_as_its_energy_says() {
+        for (position, direction, density) in [
+            ([0, 3, 0], [1, 0, 0], 1.934_241_610_912_67),
+            ([-3, 2, 1], [-1, 0, 0], 3.517_558_179_693_52),
+        ] {
+            let scene = json!({
+                "observer": { "velocity": { "beta": 0.9, "direction": direction } },
+                "objects": [{ "name": "ball", "shape": { "sphere": { "radius": 1 } }, "position": position }],
+            });
+            let scene = Scene::from_json(&scene.to_string()).unwrap();
+            let scenery = scenery(&scene);
+            let moment = scene.moment(0).unwrap();
+            let crowd = Crowd::new(scenery.bodies.iter(), Viewpoint::Observer(&moment));
+            // Rings of equal solid angle around the direction of motion, each with places of its own.
+            let rings = 1500;
+            let mut sum = 0.0;
+            for (ring, step) in (0..rings).flat_map(|ring| (0..rings).map(move |step| (ring, step)))
+            {
+                let along = (2.0 * f64::from(ring) + 1.0) / f64::from(rings) - 1.0;
+                let angle = std::f64::consts::TAU
+                    * (f64::from(step) / f64::from(rings) + 0.618 * f64::from(ring));
+                let across = (1.0 - along * along).sqrt();
+                let seen = DVec3::new(along, across * angle.cos(), across * angle.sin());
+                if let Some(hit) = crowd.nearest(seen, 0.0, f64::MAX, false) {
+                    sum += hit.doppler.powi(4);
+                }
+            }
+            let found = sum * 2.0 * std::f64::consts::TAU / f64::from(rings * rings);
+            assert!((found / density - 1.0).abs() < 1e-3, "{found} {density}");
         }
     }
 

@@ -4,11 +4,14 @@
 
 mod attributes;
 mod built_in;
+mod effects;
+mod emission;
 mod error;
 mod flight;
 mod flight_plan;
 mod forms;
 mod json;
+mod lamp;
 mod marker;
 mod object;
 mod observer;
@@ -22,9 +25,12 @@ mod units;
 
 pub use attributes::{Attribute, Attributes, UnknownAttribute};
 pub use built_in::{BUILT_IN_SCENES, BuiltInScene};
+pub use effects::{Effects, EffectsError, Exposure, Stops};
+pub use emission::{Emission, EmissionError};
 pub use error::InvalidScene;
 pub use flight_plan::FlightPlan;
 pub use json::SceneError;
+pub use lamp::{Carrier, Flash, Lamp, LampError, LampSource, PointLamp};
 pub use marker::{MarkerRadius, MarkerRadiusError};
 pub use object::{Object, Source};
 pub use observer::Observer;

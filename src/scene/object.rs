@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::forms::{self, FromObject, Keyed, VelocityForm};
-use super::{InvalidScene, Place, Scale, Tolerance};
+use super::{Emission, InvalidScene, Place, Scale, Tolerance};
 use crate::material::Model;
 use crate::shape::{Appearance, Color, Shape};
 use crate::spacetime::{Event, Rotation, Velocity, ViewModel, WorldLine};
@@ -37,6 +37,8 @@ pub struct Object {
     pub tolerance: Option<Tolerance>,
     /// Which effects of special relativity its shape is shown with; if absent, those that the scene file says, or both.
     pub model: Option<ViewModel>,
+    /// Its own light, if it is a black body; pictures and colours of vertices show it in place of its material.
+    pub emission: Option<Emission>,
 }
 
 /// Where the geometry of an object comes from.
@@ -62,6 +64,7 @@ impl Object {
             velocity: Velocity::ZERO,
             tolerance: None,
             model: None,
+            emission: None,
         }
     }
 
@@ -127,6 +130,10 @@ struct ObjectFields {
     tolerance: Option<Tolerance>,
     /// Which effects of special relativity this object's shape is shown with; those that the scene says if absent.
     model: Option<ViewModel>,
+    /// Makes the object a black body, which needs no lamp; its material then has no say.
+    #[serde(default)]
+    #[schemars(with = "Option<Emission>")]
+    emission: Option<FromObject<Emission>>,
 }
 
 impl TryFrom<FromObject<ObjectFields>> for Object {
@@ -164,6 +171,7 @@ impl TryFrom<FromObject<ObjectFields>> for Object {
             velocity: fields.velocity,
             tolerance: fields.tolerance,
             model: fields.model,
+            emission: fields.emission.map(|FromObject(emission)| emission),
         })
     }
 }

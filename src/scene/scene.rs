@@ -7,7 +7,10 @@ use serde::Deserialize;
 
 use super::forms::{FromObject, Keyed, Steps};
 use super::observer::{self, ObserverFields};
-use super::{Attributes, InvalidScene, Object, Observer, Tolerance, Units};
+use super::{
+    Attributes, Carrier, Effects, InvalidScene, Lamp, LampSource, Object, Observer, Tolerance,
+    Units,
+};
 use crate::spacetime::{Flight, Moment, ViewModel};
 
 /// A scene: an observer, objects, and the steps at which the observer looks.
@@ -25,6 +28,8 @@ pub struct Scene {
     steps: Vec<f64>,
     tolerance: Tolerance,
     attributes: Attributes,
+    lamps: Vec<Lamp>,
+    effects: Effects,
 }
 
 impl Scene {
@@ -55,6 +60,8 @@ impl Scene {
             steps: vec![0.0],
             tolerance: Tolerance::default(),
             attributes: Attributes::default(),
+            lamps: vec![],
+            effects: Effects::default(),
         })
     }
 
@@ -152,6 +159,41 @@ impl Scene {
         self.attributes
     }
 
+    /// The scene lit by these lamps, and by no others; without any, pictures have a lamp at the eye.
+    ///
+    /// # Errors
+    ///
+    /// A lamp on an object that the scene does not have.
+    pub fn with_lamps(mut self, lamps: Vec<Lamp>) -> Result<Self, InvalidScene> {
+        for (number, lamp) in lamps.iter().enumerate() {
+            if let LampSource::Point(point) = lamp.source()
+                && let Carrier::Object(name) = point.carrier()
+                && !self.objects.iter().any(|object| object.name == *name)
+            {
+                return Err(InvalidScene::LampObject(number, name.clone()));
+            }
+        }
+        self.lamps = lamps;
+        Ok(self)
+    }
+
+    /// The lamps that light the scene in pictures.
+    pub fn lamps(&self) -> &[Lamp] {
+        &self.lamps
+    }
+
+    /// The scene with these effects asked for, and no others.
+    #[must_use]
+    pub fn with_effects(mut self, effects: Effects) -> Self {
+        self.effects = effects;
+        self
+    }
+
+    /// What becomes of light on its way, beside shapes.
+    pub fn effects(&self) -> Effects {
+        self.effects
+    }
+
     /// How far the photosurface of an object may be from the true one.
     pub fn tolerance(&self, object: &Object) -> Tolerance {
         object.tolerance.unwrap_or(self.tolerance)
@@ -225,6 +267,13 @@ struct SceneFields {
     /// What is computed and written for every vertex beside its place; nothing if absent.
     #[serde(default)]
     attributes: Attributes,
+    /// The lamps by which pictures of the scene are lit; without any, a lamp at the eye and a little light from above.
+    #[serde(default)]
+    lamps: Vec<Lamp>,
+    /// What becomes of light on its way, beside shapes; nothing if absent.
+    #[serde(default)]
+    #[schemars(with = "Effects")]
+    effects: Option<FromObject<Effects>>,
 }
 
 impl TryFrom<FromObject<SceneFields>> for Scene {
@@ -237,12 +286,17 @@ impl TryFrom<FromObject<SceneFields>> for Scene {
         for object in &mut objects {
             object.model.get_or_insert(fields.model);
         }
-        let scene = Self::new(observer, objects)?.with_steps(fields.steps.0)?;
+        let scene = Self::new(observer, objects)?
+            .with_steps(fields.steps.0)?
+            .with_lamps(fields.lamps)?;
         Ok(Self {
             title: fields.title,
             units,
             tolerance: fields.tolerance,
             attributes: fields.attributes,
+            effects: fields
+                .effects
+                .map_or(Effects::default(), |FromObject(effects)| effects),
             ..scene
         })
     }

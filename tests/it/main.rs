@@ -27,7 +27,9 @@ mod physics {
 
 mod effects {
     mod colours;
+    mod lamps;
     mod models;
+    mod pictures;
 }
 
 mod flights {
@@ -66,6 +68,7 @@ mod export {
 
 mod render {
     mod golden;
+    mod lamps;
     mod one_call;
     mod pictures;
 }

@@ -221,6 +221,7 @@ fn rays_agree_with_the_turned_photosurface() {
         {
             turned.add_photosurface(
                 object,
+                &moment,
                 &surface.mesh.transformed(&back),
                 surface.material.as_ref(),
             );

@@ -549,12 +549,12 @@ fn write_and_draw(placed: &PlacedScene, surfaces: &[Photosurface]) {
             rays.add_at_rest(object, part);
         }
     }
+    let moment = placed.scene().moment(0).expect("a step");
     for surface in surfaces {
-        meshes.add_photosurface(object, &surface.mesh, surface.material.as_ref());
+        meshes.add_photosurface(object, &moment, &surface.mesh, surface.material.as_ref());
     }
     let size = PictureSize::new(6, 4).expect("pixels");
     let camera = Camera::new(size, Projection::FullSky, DVec3::NEG_Z).expect("a camera");
-    let moment = placed.scene().moment(0).expect("a step");
     for scenery in [&rays, &meshes] {
         let viewpoints = [
             Viewpoint::Observer(&moment),

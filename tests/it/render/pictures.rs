@@ -44,6 +44,7 @@ fn by_rays(placed: &PlacedScene, camera: &Camera) -> Picture {
 /// them may be seen, as certified for a tolerance that is an angle.
 fn by_meshes(placed: &PlacedScene, camera: &Camera, wanted: SurfaceOptions) -> (Picture, f64) {
     let mut scenery = Scenery::new();
+    let moment = placed.scene().moment(0).expect("a step");
     let mut angle = 0.0_f64;
     for surface in placed.photosurfaces(0, wanted).expect("a step") {
         let objects = placed.scene().objects().iter();
@@ -51,7 +52,7 @@ fn by_meshes(placed: &PlacedScene, camera: &Camera, wanted: SurfaceOptions) -> (
             .clone()
             .find(|object| object.name == surface.facts.object)
             .expect("photosurfaces are of objects");
-        scenery.add_photosurface(object, &surface.mesh, surface.material.as_ref());
+        scenery.add_photosurface(object, &moment, &surface.mesh, surface.material.as_ref());
         // In degrees, as the tolerance is.
         angle = angle.max(surface.facts.certificate.total.to_radians());
     }

@@ -94,12 +94,13 @@ fn photosurfaces(placed: &PlacedScene, step: usize, wanted: SurfaceOptions) -> S
     if let Some(marker) = placed.marker() {
         scenery.add_in_view(marker);
     }
+    let moment = placed.scene().moment(step).expect("a step");
     for surface in placed.photosurfaces(step, wanted).expect("a step") {
         let mut objects = placed.scene().objects().iter();
         let object = objects
             .find(|object| object.name == surface.facts.object)
             .expect("a photosurface is of an object of its scene");
-        scenery.add_photosurface(object, &surface.mesh, surface.material.as_ref());
+        scenery.add_photosurface(object, &moment, &surface.mesh, surface.material.as_ref());
     }
     scenery
 }

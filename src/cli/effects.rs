@@ -1,0 +1,120 @@
+//! Flags for effects beside shapes, which override those of the scene.
+
+use photosurface::Scene;
+use photosurface::effects::{Doppler, Spectrum};
+use photosurface::scene::{Effects, Exposure};
+
+/// The Doppler effect alone.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Effects (override the scene)")]
+pub(super) struct DopplerArgs {
+    /// Show the Doppler effect: "spectrum", the colours of the shifted light, at the brightness that surfaces have at rest;
+    /// "ramp", the Doppler factor as a colour, blue above 1 and red below; "none" [default: none]
+    #[arg(long, value_enum)]
+    doppler: Option<DopplerName>,
+}
+
+/// All effects.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Effects (override the scene)")]
+pub(super) struct EffectArgs {
+    #[command(flatten)]
+    doppler: DopplerArgs,
+    /// Show the searchlight effect: how much brighter or darker the shifted light is to the eye; with --doppler spectrum, the
+    /// whole shifted spectrum
+    #[arg(long)]
+    searchlight: bool,
+    /// Make pictures brighter by a number of stops, each a factor of 2, or by "auto" as bright as a screen can show, all of
+    /// them alike [default: 0]
+    #[arg(long, value_name = "STOPS|auto", value_parser = exposure, allow_hyphen_values = true)]
+    exposure: Option<Exposure>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum DopplerName {
+    Spectrum,
+    Ramp,
+    None,
+}
+
+impl DopplerArgs {
+    /// The scene with the Doppler effect that the flag says.
+    pub(super) fn scene(&self, scene: Scene) -> Scene {
+        let effects = scene.effects();
+        let doppler = self.doppler(effects.doppler);
+        scene.with_effects(Effects { doppler, ..effects })
+    }
+
+    fn doppler(&self, of_scene: Doppler) -> Doppler {
+        match (self.doppler, of_scene) {
+            // With what the scene says of spectra.
+            (None, doppler) | (Some(DopplerName::Spectrum), doppler @ Doppler::Spectrum(_)) => {
+                doppler
+            }
+            (Some(DopplerName::Spectrum), _) => Doppler::Spectrum(Spectrum::default()),
+            (Some(DopplerName::Ramp), _) => Doppler::Ramp,
+            (Some(DopplerName::None), _) => Doppler::None,
+        }
+    }
+}
+
+impl EffectArgs {
+    /// The scene with the effects that the flags say.
+    pub(super) fn scene(&self, scene: Scene) -> Scene {
+        let scene = self.doppler.scene(scene);
+        let effects = scene.effects();
+        scene.with_effects(Effects {
+            searchlight: self.searchlight || effects.searchlight,
+            exposure: self.exposure.unwrap_or(effects.exposure),
+            ..effects
+        })
+    }
+}
+
+/// A number of stops, or `auto`.
+fn exposure(text: &str) -> anyhow::Result<Exposure> {
+    Ok(text.parse()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::{Args, FromArgMatches};
+
+    use super::*;
+
+    fn with_flags(effects: &str, flags: &[&str]) -> Effects {
+        let scene = format!(
+            r#"{{ "effects": {effects}, "objects": [{{ "name": "s", "shape": {{ "sphere": {{ "radius": 1 }} }} }}] }}"#
+        );
+        let scene = Scene::from_json(&scene).unwrap();
+        let command = EffectArgs::augment_args(clap::Command::new("render"));
+        let words = std::iter::once("render").chain(flags.iter().copied());
+        let matches = command.try_get_matches_from(words).unwrap();
+        let args = EffectArgs::from_arg_matches(&matches).unwrap();
+        args.scene(scene).effects()
+    }
+
+    #[test]
+    fn flags_override_the_scene() {
+        let scene = r#"{ "doppler": { "kelvin": 3000 }, "exposure": 2 }"#;
+        let as_it_is = with_flags(scene, &[]);
+        assert!(matches!(as_it_is.doppler, Doppler::Spectrum(_)) && !as_it_is.searchlight);
+        assert_eq!(with_flags(scene, &["--doppler", "spectrum"]), as_it_is);
+        let all = with_flags(
+            scene,
+            &["--doppler=ramp", "--searchlight", "--exposure=-1.5"],
+        );
+        assert_eq!(all.doppler, Doppler::Ramp);
+        assert!(all.searchlight);
+        assert_eq!(all.exposure, "-1.5".parse().unwrap());
+        let none = with_flags(scene, &["--doppler=none", "--exposure", "auto"]);
+        assert_eq!(
+            (none.doppler, none.exposure),
+            (Doppler::None, Exposure::Auto)
+        );
+        assert_eq!(
+            with_flags("{}", &["--doppler=spectrum"]).doppler,
+            Doppler::Spectrum(Spectrum::default())
+        );
+    }
+}
