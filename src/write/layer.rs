@@ -20,7 +20,7 @@ pub(super) struct Layer<'a> {
     /// The box around all that shares corners with it, if that is more.
     pub(super) around: Option<(DVec3, DVec3)>,
     /// How far it is moved, so that it stands beside others.
-    beside: DVec3,
+    pub(super) beside: DVec3,
     /// `None` for the observer's own marker: nothing moves.
     pub(super) facts: Option<&'a Facts>,
     pub(super) vertex_data: Option<&'a VertexData>,
