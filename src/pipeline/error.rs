@@ -46,7 +46,7 @@ pub enum PlacedSceneError {
     },
     /// What stands for an object without contraction is too large.
     #[error(
-        "object \"{object}\" without contraction reaches {reach:e} from the observer, expected at most 1e150; \
+        "object \"{object}\" without contraction reaches {reach:.1e} from the observer, expected at most 1e150; \
          expected a lower speed or another model"
     )]
     Reach {

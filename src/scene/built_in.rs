@@ -63,6 +63,11 @@ pub const BUILT_IN_SCENES: &[BuiltInScene] = &[
         summary: "a full circle at 0.6 c",
         json: include_str!("../../examples/scenes/orbit.json"),
     },
+    BuiltInScene {
+        name: "models",
+        summary: "a sphere and a cube at 0.9 c; try --models seen,delayed,contracted,rest --sheet",
+        json: include_str!("../../examples/scenes/models.json"),
+    },
 ];
 
 impl BuiltInScene {

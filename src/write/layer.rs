@@ -115,6 +115,14 @@ impl<'a> From<&'a Photosurface> for Layer<'a> {
 }
 
 impl<'a> Layer<'a> {
+    /// Where a place is after the mesh has been moved; a mesh that stays keeps the signs of its zeros.
+    pub(super) fn moved(&self, place: DVec3) -> DVec3 {
+        match self.beside == DVec3::ZERO {
+            true => place,
+            false => place + self.beside,
+        }
+    }
+
     /// The numbers at every vertex that are asked for; the marker, at rest and seen where it is, has them too,
     /// for programs drop what not every mesh has.
     ///

@@ -80,6 +80,7 @@ mod cli {
     mod faults;
     mod flags;
     mod flight;
+    mod models;
     mod render;
 }
 

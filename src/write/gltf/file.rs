@@ -240,7 +240,7 @@ impl<'a> GltfFile<'a> {
         let mesh = self.document.mesh(&mesh)?;
         // `gltf::json` has no room for the offset in f64.
         let mut node = json!({ "name": name, "mesh": mesh });
-        let translation = packing.offset + layer.beside;
+        let translation = layer.moved(packing.offset);
         if translation != DVec3::ZERO {
             node["translation"] = json!(translation.to_array());
         }
