@@ -45,7 +45,7 @@ const POINTS: [(f64, f64); 4] = [
 ];
 
 /// The largest part of the logarithm of the Doppler factor that the rule is used for at once.
-const PANEL: f64 = 3.0;
+const PANEL: f64 = 2.0;
 
 /// Light as it arrives, in one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,7 +142,7 @@ pub fn held(factor: f64) -> f64 {
 /// # Accuracy
 ///
 /// To `5e-4` for any radiance that is a power of the factor up to `D^4` (`tests/it/effects/lamps.rs`): eight points for each
-/// part of the sky that the horizon of the surface cuts, and for each factor of `e^3`. Exact at rest, and for a radiance
+/// part of the sky that the horizon of the surface cuts, and for each factor of `e^2`. Exact at rest, and for a radiance
 /// that is the same for all factors.
 pub fn sky_irradiance(motion: Velocity, normal: DVec3, mut visit: impl FnMut(f64, f64)) {
     let rapidity = motion.rapidity();
@@ -183,14 +183,17 @@ pub fn sky_irradiance(motion: Velocity, normal: DVec3, mut visit: impl FnMut(f64
     }
 }
 
-/// Points between two numbers, and their weights.
+/// Points between two numbers, and their weights: closer together at both ends, where there may be a root.
 fn points(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
     let panels = ((to - from).max(0.0) / PANEL).ceil();
     let half = 0.5 * (to - from) / panels;
     (0..panels as u32).flat_map(move |panel| {
         let middle = from + half * (2.0 * f64::from(panel) + 1.0);
         let both = POINTS.into_iter().flat_map(|(x, w)| [(-x, w), (x, w)]);
-        both.map(move |(x, weight)| (middle + half * x, half * weight))
+        both.map(move |(x, weight)| {
+            let place = 0.5 * x * (3.0 - x * x);
+            (middle + half * place, 1.5 * (1.0 - x * x) * half * weight)
+        })
     })
 }
 

@@ -207,6 +207,7 @@ fn a_sky_lights_a_moving_surface_as_a_sum_over_all_directions_says() {
             let normal = match case {
                 0 => motion.direction(),
                 1 => -motion.direction(),
+                2 => motion.direction().any_orthonormal_vector(),
                 _ => random.direction(),
             };
             for power in [0, 1, 4] {

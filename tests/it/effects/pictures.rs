@@ -58,6 +58,7 @@ fn around_unlit(grey: f64, effects: &Value) -> PlacedScene {
     let scene = around(&sphere, &json!({}), effects).scene().clone();
     let material = json!({
         "pbrMetallicRoughness": { "baseColorFactor": [grey, grey, grey, 1.0] },
+        "doubleSided": true,
         "extensions": { "KHR_materials_unlit": {} },
     });
     let material = Arc::new(Material::new(material, vec![]).expect("a material"));
