@@ -49,7 +49,8 @@ const FACETS: f64 = 1e-4;
 /// With [`Scenery::set_lamps`] lamps of a scene take the place of the lamp at the eye. Of each the event is found at which the
 /// light left that meets the surface when the surface's own light leaves for the observer; direction, strength and, with
 /// effects, colour are those in the rest frame of the surface. Opaque surfaces at rest cast shadows, an object not in the
-/// light of a lamp that rides on it, and itself not within 0.002 of its size.
+/// light of a lamp that rides on it, and itself not within 0.002 of its size. An object that is shown under another model has
+/// the light of its photosurface.
 ///
 /// # Effects
 ///

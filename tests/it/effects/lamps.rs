@@ -8,7 +8,7 @@ use photosurface::effects::{
 use photosurface::spacetime::{Event, Lorentz};
 use photosurface::{DVec3, Velocity};
 
-use crate::common::oracle::{apply, big, big_vector, boost, error, length, small, vector_error};
+use crate::common::oracle::{apply, big_vector, boost, error, length, small, vector_error};
 use crate::common::{Random, Worst};
 
 fn velocity(rapidity: f64, direction: DVec3) -> Velocity {
@@ -177,7 +177,7 @@ fn both_forms_of_the_irradiance_of_a_moving_lamp_agree() {
 /// Light of radiance `D^power` on one side of a surface: a sum over a fine grid of the sky.
 fn by_grid(motion: Velocity, normal: DVec3, power: i32) -> f64 {
     let (gamma, beta) = (motion.gamma(), motion.beta());
-    let (rings, turns) = (2000, 200);
+    let (rings, turns) = (4000, 400);
     let (u, v) = motion.direction().any_orthonormal_pair();
     let mut sum = 0.0;
     for ring in 0..rings {
@@ -207,6 +207,7 @@ fn a_sky_lights_a_moving_surface_as_a_sum_over_all_directions_says() {
             let normal = match case {
                 0 => motion.direction(),
                 1 => -motion.direction(),
+                2 => motion.direction().any_orthonormal_vector(),
                 _ => random.direction(),
             };
             for power in [0, 1, 4] {
@@ -220,7 +221,7 @@ fn a_sky_lights_a_moving_surface_as_a_sum_over_all_directions_says() {
         }
     }
     println!("worst: {worst:.2e}");
-    assert!(worst < 2e-2, "{worst}");
+    assert!(worst < 5e-4, "{worst}");
 }
 
 /// Net flux: the two sides of a surface together. Of an isotropic sky, of all wavelengths, `4 beta gamma^2 / 3` times the

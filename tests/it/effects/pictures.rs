@@ -1,15 +1,18 @@
 //! Effects in pictures: against closed forms, and rays against photosurfaces.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use photosurface::effects::{
     Daylight, Doppler, Reflectance, Spectrum, luminance, ramp_color, tone, within_gamut,
 };
 use photosurface::jobs::{Aim, CameraSettings, FieldOfView, RenderError};
+use photosurface::material::Material;
 use photosurface::render::{
     Camera, Picture, PictureEffects, PictureOptions, PictureSize, Projection, Scenery, Viewpoint,
 };
-use photosurface::scene::{Effects, Exposure};
-use photosurface::shape::Color;
+use photosurface::scene::{Effects, Exposure, Object, Source};
+use photosurface::shape::{Appearance, Color, Shape};
 use photosurface::{
     DVec3, PictureMethod, PictureSettings, PictureView, PlacedScene, Scene, Textures, load_models,
     render,
@@ -47,6 +50,26 @@ fn around(shape: &Value, more: &Value, effects: &Value) -> PlacedScene {
         "objects": [object],
         "effects": effects,
     }))
+}
+
+/// The same with a ball of a grey that it has whatever the lamp: without a lamp's angles.
+fn around_unlit(grey: f64, effects: &Value) -> PlacedScene {
+    let sphere = json!({ "sphere": { "radius": 9 } });
+    let scene = around(&sphere, &json!({}), effects).scene().clone();
+    let material = json!({
+        "pbrMetallicRoughness": { "baseColorFactor": [grey, grey, grey, 1.0] },
+        "doubleSided": true,
+        "extensions": { "KHR_materials_unlit": {} },
+    });
+    let material = Arc::new(Material::new(material, vec![]).expect("a material"));
+    let shape = Shape::sphere(9.0).expect("a sphere");
+    let mut model = shape.model(&Appearance::default()).expect("a model");
+    model.parts[0].material = Some(material);
+    let object = Object::new("around", Source::Model(Arc::new(model)));
+    let unlit = Scene::new(scene.observer().clone(), vec![object]).expect("a scene");
+    let unlit = unlit.with_effects(scene.effects());
+    let (models, _) = load_models(&unlit, ".".as_ref()).expect("a model at hand");
+    PlacedScene::new(unlit, models).expect("one model an object")
 }
 
 /// The picture of the whole sky.
@@ -95,8 +118,7 @@ fn a_grey_ball_has_the_colours_of_black_bodies() {
     let light = Daylight::default();
     let part = f64::from(Color([0x80; 3]).linear()[0]);
     let grey = Reflectance::Grey(part);
-    let shape = json!({ "sphere": { "radius": 9 } });
-    let of = |effects: Value| around(&shape, &json!({ "color": "#808080" }), &effects);
+    let of = |effects: Value| around_unlit(part, &effects);
     let both = of(json!({ "doppler": "spectrum", "searchlight": true }));
     assert_sky(&both, |factor| light.seen_color(&grey, factor));
     let colour = of(json!({ "doppler": "spectrum" }));

