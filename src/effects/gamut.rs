@@ -32,6 +32,21 @@ pub fn within_gamut(color: DVec3) -> DVec3 {
     inside.max(DVec3::ZERO)
 }
 
+/// A colour in linear sRGB with channels from 0 to 1, for what has a tone curve of its own: colours that a screen shows stay,
+/// others go towards the grey of their luminance, and what is brighter than white is white.
+pub fn within_screen(color: DVec3) -> DVec3 {
+    let color = within_gamut(color);
+    let (grey, most) = (luminance(color), color.max_element());
+    if most <= 1.0 {
+        return color;
+    }
+    if !(grey < 1.0) {
+        return DVec3::ONE;
+    }
+    let inside = DVec3::splat(grey).lerp(color, (1.0 - grey) / (most - grey));
+    inside.clamp(DVec3::ZERO, DVec3::ONE)
+}
+
 /// A colour as a screen shows it, channels from 0 to 1: those up to 0.8 stay, brighter ones are compressed and turn white.
 /// Channels of `color`, in linear sRGB, are 0 or more; infinite light is white.
 pub fn tone(color: DVec3) -> DVec3 {
@@ -66,8 +81,21 @@ mod tests {
         for color in colors() {
             let inside = within_gamut(color);
             assert!(inside.min_element() >= 0.0, "{color}: {inside}");
-            let shown = tone(inside);
+            let bounded = within_screen(color);
             let fits = |channel: f64| (0.0..=1.0).contains(&channel);
+            assert!(
+                bounded.to_array().into_iter().all(fits),
+                "{color}: {bounded}"
+            );
+            let expected = luminance(inside).min(1.0);
+            assert!(
+                (luminance(bounded) - expected).abs() < 1e-14,
+                "{color}: {bounded}"
+            );
+            if inside.max_element() <= 1.0 {
+                assert_eq!(bounded, inside);
+            }
+            let shown = tone(inside);
             assert!(shown.to_array().into_iter().all(fits), "{color}: {shown}");
         }
     }

@@ -16,7 +16,7 @@ mod temperature;
 
 pub(crate) use color::{byte_of_linear, linear_of_byte, linear_of_srgb};
 pub use doppler::{Beyond, Doppler, Spectrum};
-pub use gamut::{luminance, tone, within_gamut};
+pub use gamut::{luminance, tone, within_gamut, within_screen};
 pub use ramp::{RAMP_OCTAVES, ramp_color};
 pub use seen_light::{Lamplight, SeenLight};
 pub use spectrum::{Daylight, Reflectance, black_body_color};

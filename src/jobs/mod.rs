@@ -7,6 +7,7 @@ mod clock;
 mod diagram;
 #[cfg(feature = "plot")]
 mod diagram_plot;
+mod effect_costs;
 mod export;
 mod export_settings;
 mod exposure;
@@ -15,6 +16,7 @@ mod files;
 mod framing;
 mod guides;
 mod input;
+mod legend;
 mod load;
 mod picture_settings;
 mod pictures;
@@ -22,6 +24,7 @@ mod progress;
 mod rendered;
 mod sheet;
 mod tally;
+mod vertex_colors;
 mod views;
 mod work;
 
@@ -33,6 +36,7 @@ pub use diagram::{
     DiagramError, DiagramMoment, DiagramPoint, DiagramSettings, DiagramTick, Emission, PointLine,
     WorldlineDiagram,
 };
+pub use effect_costs::EffectCost;
 pub use export::{
     ExportLevel, Exported, FittedExport, export, export_levels, levels_of_detail, write_report,
 };
@@ -49,3 +53,4 @@ pub use pictures::{render, render_to_files};
 pub use progress::{Cancelled, Progress};
 pub use rendered::{EmptyView, RenderError, Rendered, ViewCost};
 pub use tally::Tally;
+pub use vertex_colors::ColorNote;

@@ -8,9 +8,11 @@ use glam::DVec3;
 use super::exposure::found_exposure;
 use super::extent::{middle_of_sky, outermost};
 use super::framing::{OutsideCamera, seen_vertices};
+use super::legend::draw_ramp_legend;
 use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
 use super::progress::Progress;
 use super::rendered::{EmptyView, RenderError, Rendered, ViewCost};
+use crate::effects::Doppler;
 use crate::pipeline::{PlacedScene, PlacedSceneError};
 use crate::render::{
     Camera, Picture, PictureEffects, PictureOptions, Scenery, Strokes, Textures, Viewpoint,
@@ -90,6 +92,13 @@ impl<'a> Views<'a> {
         Ok(())
     }
 
+    /// Draws what explains the colours of a view, if they need it.
+    fn draw_legend(&self, picture: &mut Picture) {
+        if self.placed.scene().effects().doppler == Doppler::Ramp {
+            draw_ramp_legend(picture);
+        }
+    }
+
     /// Nothing yet, with the effects that the scene calls for.
     fn scenery(&self) -> Scenery {
         new_scenery(self.textures, self.effects.as_ref())
@@ -151,7 +160,7 @@ impl<'a> Views<'a> {
         let camera = self.observer_camera(fov_deg, &places)?;
         let moment = self.moment(step)?;
         let viewpoint = Viewpoint::Observer(&moment);
-        let (picture, cost) = match &self.at_rest {
+        let (mut picture, cost) = match &self.at_rest {
             Some(scenery) => self.take(scenery, &camera, viewpoint)?,
             None => {
                 let mut scenery = self.scenery();
@@ -161,10 +170,12 @@ impl<'a> Views<'a> {
         };
         self.rendered.costs.push(cost);
         let background = self.settings.background.0;
-        if picture.bytes().chunks(3).all(|pixel| pixel == background) {
+        let is_empty = picture.bytes().chunks(3).all(|pixel| pixel == background);
+        if is_empty {
             let look = middle_of_sky(&places);
             self.rendered.empty.push(EmptyView { step, look });
         }
+        self.draw_legend(&mut picture);
         Ok(picture)
     }
 
@@ -194,6 +205,7 @@ impl<'a> Views<'a> {
         settings
             .guides
             .draw(&mut picture, outside, &scenery, &edges, background);
+        self.draw_legend(&mut picture);
         Ok(picture)
     }
 

@@ -7,11 +7,12 @@ use glam::{DAffine2, DVec2, DVec4, Vec3, Vec4};
 use super::Textures;
 use super::texture::Pixels;
 use crate::material::{AlphaMode, Material};
+use crate::mesh::Mesh;
 
 /// A material, ready to be looked at: its base colour.
 ///
 /// There is no light but the lamp at the eye, so gloss, metal and bumps stay out of pictures.
-pub(super) struct Paint {
+pub(crate) struct Paint {
     base_color: Vec4,
     texture: Option<AppliedTexture>,
     alpha_mode: AlphaMode,
@@ -40,7 +41,7 @@ impl Paint {
     }
 
     /// The paint of `object`'s material; without its texture where that cannot be decoded.
-    pub(super) fn new(material: Option<&Arc<Material>>, object: &str, textures: &Textures) -> Self {
+    pub(crate) fn new(material: Option<&Arc<Material>>, object: &str, textures: &Textures) -> Self {
         let Some(material) = material else {
             return Self::plain();
         };
@@ -68,17 +69,33 @@ impl Paint {
 
     /// Linear colour and opacity at `texture`, where the vertices have the colour `vertex`.
     pub(super) fn color_at(&self, texture: DVec2, vertex: Vec4) -> (Vec3, f32) {
-        let picture = self.texture.as_ref().map_or(Vec4::ONE, |placed| {
-            let place = placed.transform.transform_point2(texture);
-            placed.pixels.at(place)
-        });
-        let color = self.base_color * picture * vertex;
+        let color = self.base_color * self.picture_at(texture) * vertex;
         let opacity = match self.alpha_mode {
             AlphaMode::Opaque => 1.0,
             AlphaMode::Mask(least) => f32::from(f64::from(color.w) >= least),
             AlphaMode::Blend => color.w.clamp(0.0, 1.0),
         };
         (color.truncate(), opacity)
+    }
+
+    /// Linear colour and opacity at a vertex of a mesh: opaque where the material says that opacity means nothing.
+    pub(crate) fn at_vertex(&self, mesh: &Mesh, vertex: usize) -> Vec4 {
+        let set = self.texture_set();
+        let set = set.and_then(|set| mesh.texture_coordinates().get(set));
+        let texture = set.map_or(DVec2::ZERO, |set| set[vertex].as_dvec2());
+        let own = mesh.colors().map_or(Vec4::ONE, |colors| colors[vertex]);
+        let color = self.base_color * self.picture_at(texture) * own;
+        match self.alpha_mode {
+            AlphaMode::Opaque => color.with_w(1.0),
+            AlphaMode::Mask(_) | AlphaMode::Blend => color,
+        }
+    }
+
+    fn picture_at(&self, texture: DVec2) -> Vec4 {
+        self.texture.as_ref().map_or(Vec4::ONE, |placed| {
+            let place = placed.transform.transform_point2(texture);
+            placed.pixels.at(place)
+        })
     }
 }
 
