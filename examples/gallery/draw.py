@@ -60,6 +60,7 @@ PICTURES = [
     ("figure_8", None, "--example flight --size 480x300 --steps 2.1"),
     ("figure_9", None, "--example flight --size 480x300 --steps 3.7"),
     ("takeoff", None, "--example takeoff --sheet --size 240x180"),
+    ("models", None, "--example models --models seen,delayed,contracted,rest --sheet --size 240x200"),
 ]
 
 # Minkowski diagrams.

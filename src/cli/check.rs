@@ -11,6 +11,7 @@ use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, predicted, total
 use super::args::{InputArgs, ObserverArgs};
 use super::input::Input;
 use super::messages::{Verbosity, counted, print_if_open, shown};
+use super::models::ModelArgs;
 use super::output::FileFormat;
 use super::status::Status;
 use super::wording::or_ply;
@@ -32,6 +33,8 @@ pub(super) struct CheckArgs {
     #[command(flatten)]
     observer: ObserverArgs,
     #[command(flatten)]
+    model: ModelArgs,
+    #[command(flatten)]
     accuracy: AccuracyArgs,
     #[command(flatten)]
     detail: DetailArgs,
@@ -52,7 +55,7 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
     let mut status = Status::Done;
     let verbosity = Verbosity::new(args.quiet, args.verbose);
     let input = Input::read(&args.input, &args.observer, verbosity)?;
-    let scene = args.accuracy.scene(input.scene);
+    let scene = args.model.scene(args.accuracy.scene(input.scene));
     let placed = PlacedScene::new(scene, input.models)?;
     for (name, part) in placed.objects().flat_map(|(_, parts)| parts) {
         verbosity.detail(format_args!(

@@ -21,6 +21,7 @@ use super::cost_tables::{
 use super::drawing::DrawingFormat;
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, grouped, print_if_open};
+use super::models::ModelArgs;
 use super::output::{Bar, check_destinations, is_stdout, write_result};
 
 /// Show what accuracy costs: triangles, bytes, time and memory of meshes over tolerances, rays and time of pictures
@@ -42,6 +43,8 @@ pub(super) struct CostArgs {
     input: InputArgs,
     #[command(flatten)]
     observer: ObserverArgs,
+    #[command(flatten)]
+    model: ModelArgs,
     #[command(flatten)]
     study: StudyArgs,
     #[command(flatten)]
@@ -144,7 +147,8 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
         None => {}
     }
     let tables = tables(output.csv.as_ref(), only);
-    let input = Input::read(&args.input, &args.observer, verbosity)?;
+    let mut input = Input::read(&args.input, &args.observer, verbosity)?;
+    input.scene = args.model.scene(input.scene);
     let files = [&output.json, &output.plot].into_iter().flatten();
     let files = files.chain(tables.iter().map(|(path, _)| path));
     check_destinations(files.cloned(), &input.files)?;
@@ -201,6 +205,7 @@ fn integrators(args: &CostArgs, verbosity: Verbosity) -> anyhow::Result<()> {
     refuse(&[("--only", args.study.only.is_some())], others)?;
     refuse(&args.meshes.given(), others)?;
     refuse(&args.pictures.given(), others)?;
+    refuse(&args.model.given(), others)?;
     refuse(
         &args.observer.beside_the_flight(),
         "changes nothing for --integrators, which compares all integrators at the end of the flight",

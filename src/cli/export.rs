@@ -18,6 +18,7 @@ use super::args::{InputArgs, ObserverArgs, number};
 use super::effects::DopplerArgs;
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print, size, stdout_is_closed};
+use super::models::ModelsArgs;
 use super::output::{Bar, FileFormat, check_destinations, from_first_to_last, is_stdout};
 use super::status::Status;
 use super::wording::{in_words_of_flags, or_ply};
@@ -39,6 +40,8 @@ pub(super) struct ExportArgs {
     observer: ObserverArgs,
     #[command(flatten)]
     effects: DopplerArgs,
+    #[command(flatten)]
+    models: ModelsArgs,
     #[command(flatten)]
     accuracy: AccuracyArgs,
     #[command(flatten)]
@@ -128,8 +131,12 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
         input.scene = input.scene.with_attributes(attributes);
     }
     let path = output.path(&input.name);
-    let scene = args.effects.scene(args.accuracy.scene(input.scene));
-    let placed = PlacedScene::new(scene, input.models)?;
+    let scene = args.models.scene(args.accuracy.scene(input.scene));
+    let scene = args.effects.scene(scene);
+    let placed = match args.models.side_by_side()? {
+        [] => PlacedScene::new(scene, input.models)?,
+        models => PlacedScene::side_by_side(scene, &input.models, models)?,
+    };
     let settings = args.settings(start, &input.textures);
     let levels = export_levels(&placed, &settings, format, &path).map_err(in_words_of_flags)?;
     check_destinations(levels.iter().flat_map(ExportLevel::outputs), &input.files)?;

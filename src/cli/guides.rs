@@ -1,44 +1,31 @@
-//! Flags for what helps to read a picture from outside, and what its colours mean.
+//! Flags for what helps to read a picture, and what its colours mean.
 
-use photosurface::jobs::{Ghost, Guides};
+use photosurface::jobs::Guides;
+use photosurface::spacetime::ViewModel;
 
 #[derive(Debug, clap::Args)]
-#[command(next_help_heading = "Guides (for views from outside)")]
+#[command(next_help_heading = "Guides")]
 pub(super) struct GuideArgs {
     /// Draw the edges of all triangles of photosurfaces, also in the observer's view with --method mesh
     #[arg(long)]
     pub(super) wireframe: bool,
-    /// Hint at other shapes of each object: "rest", as it is at rest, around the place where its middle is seen
-    /// (blue); "contracted", where it is at the moment of observation, shortened by its motion (orange)
-    #[arg(long, value_enum, value_name = "SHAPE,...", value_delimiter = ',')]
-    ghost: Vec<GhostShape>,
-    /// Draw the observer's axes at its place: x red, y green, z blue
+    /// Hint at each object under other models: "rest", as it is at rest, around the place where its middle is seen (blue);
+    /// "contracted", where it is at the moment of observation, shortened by its motion (orange); "delayed", with the travel
+    /// time of light alone (violet); "seen", the photosurface (green)
+    #[arg(long, value_name = "MODEL,...", value_delimiter = ',')]
+    ghost: Vec<ViewModel>,
+    /// Draw the observer's axes at its place in views from outside: x red, y green, z blue
     #[arg(long)]
     axes: bool,
-    /// Draw a bar of a round length in scene units, as it is in the middle of what is shown
+    /// Draw a bar of a round length in scene units in views from outside, as it is in the middle of what is shown
     #[arg(long, conflicts_with = "full_sky")]
     scale_bar: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum GhostShape {
-    Rest,
-    Contracted,
-}
-
-impl From<GhostShape> for Ghost {
-    fn from(shape: GhostShape) -> Self {
-        match shape {
-            GhostShape::Rest => Self::Rest,
-            GhostShape::Contracted => Self::Contracted,
-        }
-    }
 }
 
 impl From<&GuideArgs> for Guides {
     fn from(args: &GuideArgs) -> Self {
         Self {
-            ghosts: args.ghost.iter().map(|&shape| shape.into()).collect(),
+            ghosts: args.ghost.clone(),
             axes: args.axes,
             scale_bar: args.scale_bar,
             wireframe: args.wireframe,
@@ -49,14 +36,19 @@ impl From<&GuideArgs> for Guides {
 impl GuideArgs {
     /// Whether something is asked for that only pictures from outside have.
     pub(super) fn are_for_outside(&self) -> bool {
-        self.axes || self.scale_bar || !self.ghost.is_empty()
+        self.axes || self.scale_bar
     }
 
     /// What the colours of guides mean, of those that are asked for.
     pub(super) fn legend(&self) -> Vec<&'static str> {
         let ghosts = [
-            (GhostShape::Rest, "blue, the shape at rest"),
-            (GhostShape::Contracted, "orange, contracted by its motion"),
+            (ViewModel::Rest, "blue, the shape at rest"),
+            (ViewModel::Contracted, "orange, contracted by its motion"),
+            (
+                ViewModel::Delayed,
+                "violet, delayed by the travel time of light",
+            ),
+            (ViewModel::Seen, "green, the photosurface"),
         ];
         let ghosts = ghosts.into_iter();
         let asked_for = ghosts.filter(|(ghost, _)| self.ghost.contains(ghost));

@@ -17,6 +17,7 @@ mod flight_tables;
 mod guides;
 mod input;
 mod messages;
+mod models;
 mod output;
 mod render;
 mod schema;

@@ -4,8 +4,11 @@ use std::io::{IsTerminal, stdout};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
-use photosurface::jobs::{EmptyView, RenderError, ViewCost};
+use photosurface::jobs::{
+    Column, EmptyView, RenderError, ViewCost, render_side_by_side, side_by_side_size,
+};
 use photosurface::render::Picture;
+use photosurface::spacetime::ViewModel;
 use photosurface::tessellate::Precision;
 use photosurface::write::write_whole;
 use photosurface::{DVec3, PictureView, PlacedScene};
@@ -17,6 +20,7 @@ use super::effects::EffectArgs;
 use super::guides::GuideArgs;
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print};
+use super::models::ModelsArgs;
 use super::output::{Bar, check_destinations, extension, from_first_to_last, is_stdout};
 use super::status::Status;
 
@@ -40,6 +44,8 @@ pub(super) struct RenderArgs {
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
+    models: ModelsArgs,
+    #[command(flatten)]
     guides: GuideArgs,
     #[command(flatten)]
     effects: EffectArgs,
@@ -58,7 +64,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     let method = camera.method()?;
     ensure!(
         camera.sheet || camera.view == View::Outside || !guides.are_for_outside(),
-        "--ghost, --axes and --scale-bar are for --view outside and --sheet"
+        "--axes and --scale-bar are for --view outside and --sheet"
     );
     ensure!(
         camera.shows_meshes(method) || !guides.wireframe,
@@ -78,33 +84,48 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
         None => PathBuf::from(format!("{}_{kind}.png", input.name)),
     };
     let steps = input.scene.steps().len();
-    settings
-        .picture_size(steps)
-        .context("--sheet: all steps side by side; choose fewer --steps or a smaller --size")?;
+    let models = args.models.side_by_side()?;
+    match models.len() {
+        0 => settings
+            .picture_size(steps)
+            .context("--sheet: all steps side by side; choose fewer --steps or a smaller --size")?,
+        columns => side_by_side_size(&settings, columns, steps)
+            .context("--models: all models side by side; choose fewer, or a smaller --size")?,
+    };
     ensure!(
         settings.picture_count(steps) == 1 || !is_stdout(&path),
         "{steps} steps are as many pictures, they cannot all go to stdout; choose one with --steps"
     );
     let files = settings.files(&path, steps);
     check_destinations(files.iter().cloned(), &input.files)?;
-    let scene = args.effects.scene(args.accuracy.scene(input.scene));
-    let mut placed = PlacedScene::new(scene, input.models)?;
+    let scene = args.models.scene(args.accuracy.scene(input.scene));
+    let scene = args.effects.scene(scene);
+    let placed = PlacedScene::new(scene.clone(), input.models)?;
     settings.guides = guides.into();
     settings.surface_options = args.accuracy.wanted(Precision::Double);
-    if camera.shows_meshes(method) && settings.surface_options.subdivide {
-        let wanted = settings.surface_options;
-        let fitted = args.accuracy.within_budget(placed, wanted, verbosity);
-        placed = fitted.placed;
-    }
+    let fits_budget = camera.shows_meshes(method) && settings.surface_options.subdivide;
+    let fitted = |placed| match fits_budget {
+        true => {
+            let wanted = settings.surface_options;
+            args.accuracy
+                .within_budget(placed, wanted, verbosity)
+                .placed
+        }
+        false => placed,
+    };
     let progress = Bar::new(0, "rows", verbosity);
     let textures = &input.textures;
-    let rendered = photosurface::render(
-        &placed,
-        textures,
-        &settings,
-        &progress,
-        |number, picture| write(&files[number], picture),
-    );
+    let finished = |number: usize, picture: &Picture| write(&files[number], picture);
+    let rendered = match models {
+        [] => {
+            let placed = fitted(placed);
+            photosurface::render(&placed, textures, &settings, &progress, finished)
+        }
+        models => {
+            let columns = columns(placed, models, fitted)?;
+            render_side_by_side(&columns, textures, &settings, &progress, finished)
+        }
+    };
     let rendered = rendered.map_err(|error| match error.downcast::<RenderError>() {
         Ok(error) => camera.flagged(error),
         Err(error) => error,
@@ -112,7 +133,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     progress.finish();
     tell_of_costs(&rendered.costs, verbosity);
     tell_of_empty(&rendered.empty, steps, camera.sheet, verbosity);
-    tell_of_missing(&input.textures, placed.scene(), verbosity);
+    tell_of_missing(&input.textures, &scene, verbosity);
     if !is_stdout(&files[0]) {
         verbosity.result(format_args!(
             "{}: {}{}",
@@ -125,6 +146,21 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
         true => Status::Done,
         false => Status::NotCertified,
     })
+}
+
+/// The scene under each of these models.
+fn columns(
+    placed: PlacedScene,
+    models: &[ViewModel],
+    fitted: impl Fn(PlacedScene) -> PlacedScene,
+) -> anyhow::Result<Vec<Column>> {
+    let column = |&model: &ViewModel| {
+        Ok(Column {
+            label: model.to_string(),
+            placed: fitted(placed.clone().with_model_for_all(model)?),
+        })
+    };
+    models.iter().map(column).collect()
 }
 
 /// Says how many rays each view took, and how long.

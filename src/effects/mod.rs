@@ -8,6 +8,7 @@ mod color;
 mod color_table;
 mod doppler;
 mod gamut;
+mod lamps;
 mod planckian;
 mod ramp;
 mod seen_light;
@@ -17,6 +18,10 @@ mod temperature;
 pub(crate) use color::{byte_of_linear, linear_of_byte, linear_of_srgb};
 pub use doppler::{Beyond, Doppler, Spectrum};
 pub use gamut::{luminance, tone, within_gamut, within_screen};
+pub use lamps::{
+    Arrival, PointLight, arrival, far_irradiance, from_point, held, point_irradiance,
+    sky_irradiance,
+};
 pub use ramp::{RAMP_OCTAVES, ramp_color};
 pub use seen_light::{Lamplight, SeenLight};
 pub use spectrum::{Daylight, Reflectance, black_body_color};

@@ -1,13 +1,14 @@
-//! Guides that help to read a picture from outside: ghosts, axes, a scale bar, labels.
+//! Guides that help to read a picture: ghosts, axes, a scale bar, labels.
 
 use glam::{DAffine3, DVec2, DVec3};
 
 use super::framing::OutsideCamera;
 use crate::light_cone::View;
 use crate::mesh::Mesh;
-use crate::pipeline::PlacedScene;
+use crate::pipeline::{PlacedScene, PlacedSceneError, SurfaceOptions};
 use crate::render::{Picture, Scenery, Strokes, Viewpoint, lettering_width};
 use crate::shape::Color;
+use crate::spacetime::ViewModel;
 
 /// An edge of a ghost is drawn if the normals of its two faces differ by more than this angle, in radians.
 const SHARP: f64 = 0.5;
@@ -19,81 +20,72 @@ const RED: Color = Color([0xe7, 0x4c, 0x3c]);
 const GREEN: Color = Color([0x2e, 0xa8, 0x5a]);
 const BLUE: Color = Color([0x3d, 0x8b, 0xe8]);
 
-/// Marks in pictures from outside that help to read them; the default is none.
+/// Marks in pictures that help to read them; the default is none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Guides {
-    /// Other shapes of each object that are drawn as ghosts; a ghost that is listed twice is drawn twice.
-    pub ghosts: Vec<Ghost>,
-    /// Whether the observer's axes are drawn at the observer: x red, y green, z blue.
+    /// Models under which each object is hinted at beside what is shown of it: the photosurface green, delayed violet,
+    /// contracted orange, at rest blue. A model that is listed twice is drawn twice.
+    ///
+    /// A ghost at rest is moved to the place where the object's middle is seen.
+    pub ghosts: Vec<ViewModel>,
+    /// Whether the observer's axes are drawn at the observer in views from outside: x red, y green, z blue.
     pub axes: bool,
-    /// Whether a bar is drawn that shows a round length, in scene units, at the distance of the camera's target.
+    /// Whether a bar is drawn in views from outside that shows a round length, in scene units, at the distance of the camera's target.
     /// Pictures of the whole sky have no scale and no bar.
     pub scale_bar: bool,
     /// Whether the edges of all triangles of photosurfaces are drawn, also in the observer's pictures of them.
     pub wireframe: bool,
 }
 
-/// Another shape of an object, shown beside its photosurface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ghost {
-    /// The object as it is in its rest frame, around the point where its middle is seen (blue).
-    Rest,
-    /// The object where it is in the observer's frame at the moment of observation, with Lorentz contraction (orange).
-    Contracted,
-}
-
-impl Ghost {
-    fn color(self) -> Color {
-        match self {
-            Self::Rest => Color([0x5d, 0xad, 0xe2]),
-            Self::Contracted => Color([0xf0, 0x9a, 0x2a]),
-        }
-    }
-
-    /// The map from the rest frame of an object to the observer's frame, where the ghost is shown; the middle of the object
-    /// is at `middle_rest`.
-    fn rest_to_shown(self, view: &View, middle_rest: DVec3) -> DAffine3 {
-        match self {
-            Self::Contracted => view.rest_to_now(),
-            Self::Rest => {
-                let turned = DAffine3::from_quat(view.rotation());
-                let offset = view.seen_position(middle_rest) - turned.transform_point3(middle_rest);
-                DAffine3::from_translation(offset) * turned
-            }
-        }
+/// The colour of a ghost.
+fn ghost_color(model: ViewModel) -> Color {
+    match model {
+        ViewModel::Seen => Color([0x48, 0xc9, 0x8b]),
+        ViewModel::Delayed => Color([0xb5, 0x7e, 0xdc]),
+        ViewModel::Contracted => Color([0xf0, 0x9a, 0x2a]),
+        ViewModel::Rest => Color([0x5d, 0xad, 0xe2]),
     }
 }
+
+/// The map from the rest frame of an object to the observer's frame at rest, moved so that the object's middle, at
+/// `middle_rest`, is where it is seen.
+fn rest_to_seen_middle(view: &View, middle_rest: DVec3) -> DAffine3 {
+    let turned = DAffine3::from_quat(view.rotation());
+    let offset = view.seen_position(middle_rest) - turned.transform_point3(middle_rest);
+    DAffine3::from_translation(offset) * turned
+}
+
+/// A ghost in the observer's frame, with its edges.
+pub(super) type Ghost = (Mesh, Strokes<DVec3>);
 
 impl Guides {
-    /// The ghosts of one step of a scene, in the observer's frame, each with its edges.
-    pub(super) fn ghosts(&self, placed: &PlacedScene, step: usize) -> Vec<(Mesh, Strokes<DVec3>)> {
+    /// The ghosts of one step of a scene; those whose edges bend are made with `options`.
+    pub(super) fn ghosts(
+        &self,
+        placed: &PlacedScene,
+        step: usize,
+        options: SurfaceOptions,
+    ) -> Result<Vec<Ghost>, PlacedSceneError> {
         let mut ghosts = Vec::new();
-        if self.ghosts.is_empty() {
-            return ghosts;
-        }
-        for (object, parts) in placed.objects() {
-            let Some(view) = placed.view(object, step) else {
-                return ghosts;
-            };
-            let bounds = parts.iter().filter_map(|(_, part)| part.mesh().bounds());
-            let (low, high) = bounds.fold(
-                (DVec3::INFINITY, DVec3::NEG_INFINITY),
-                |(low, high), (a, b)| (low.min(a), high.max(b)),
-            );
-            for ghost in &self.ghosts {
-                let shown = ghost.rest_to_shown(&view, (low + high) / 2.0);
-                for (_, part) in parts {
-                    let mesh = part.clone().transformed(&shown).mesh().clone();
-                    let edges = Strokes {
-                        lines: mesh.sharp_edges(SHARP),
-                        color: ghost.color(),
-                        width_px: 1.5,
-                    };
-                    ghosts.push((mesh, edges));
+        for &model in &self.ghosts {
+            let meshes = match model.has_delay() {
+                true => {
+                    let placed = placed.clone().with_model_for_all(model)?;
+                    let surfaces = placed.photosurfaces(step, options)?;
+                    surfaces.map(|surface| surface.mesh).collect()
                 }
-            }
+                false => straight_ghosts(placed, model, step),
+            };
+            ghosts.extend(meshes.into_iter().map(|mesh| {
+                let edges = Strokes {
+                    lines: mesh.sharp_edges(SHARP),
+                    color: ghost_color(model),
+                    width_px: 1.5,
+                };
+                (mesh, edges)
+            }));
         }
-        ghosts
+        Ok(ghosts)
     }
 
     /// Draws the edges of ghosts, and the axes and the bar if they are asked for, onto a picture from outside.
@@ -114,6 +106,28 @@ impl Guides {
             draw_scale_bar(picture, outside, contrasting(background));
         }
     }
+}
+
+/// The meshes of all objects under a model without delay, whose edges stay straight.
+fn straight_ghosts(placed: &PlacedScene, model: ViewModel, step: usize) -> Vec<Mesh> {
+    let mut meshes = Vec::new();
+    for (object, parts) in placed.objects() {
+        let Some(view) = placed.view(object, step) else {
+            return meshes;
+        };
+        let bounds = parts.iter().filter_map(|(_, part)| part.mesh().bounds());
+        let (low, high) = bounds.fold(
+            (DVec3::INFINITY, DVec3::NEG_INFINITY),
+            |(low, high), (a, b)| (low.min(a), high.max(b)),
+        );
+        let shown = match model.has_contraction() {
+            true => view.rest_to_now(),
+            false => rest_to_seen_middle(&view, (low + high) / 2.0),
+        };
+        let parts = parts.iter().map(|(_, part)| part.mesh().clone());
+        meshes.extend(parts.map(|mesh| mesh.transformed(&shown)));
+    }
+    meshes
 }
 
 /// Draws the axes of the observer, each with its name at its end.

@@ -23,6 +23,7 @@ mod pictures;
 mod progress;
 mod rendered;
 mod sheet;
+mod side_by_side;
 mod tally;
 mod vertex_colors;
 mod views;
@@ -43,7 +44,7 @@ pub use export::{
 pub use export_settings::{ExportError, ExportSettings};
 pub use files::{OutputError, check_outputs, file_for_each_step, with_suffix};
 pub use framing::{Aim, CameraSettings, FieldOfView, FramingError, OBSERVER_FOV_DEG};
-pub use guides::{Ghost, Guides};
+pub use guides::Guides;
 pub use input::{
     InputError, MAX_SCENE_BYTES, SceneTextError, scene_from_bytes, stand_off, text_of,
 };
@@ -52,5 +53,6 @@ pub use picture_settings::{PictureMethod, PictureSettings, PictureView};
 pub use pictures::{render, render_to_files};
 pub use progress::{Cancelled, Progress};
 pub use rendered::{EmptyView, RenderError, Rendered, ViewCost};
+pub use side_by_side::{Column, render_side_by_side, side_by_side_size};
 pub use tally::Tally;
 pub use vertex_colors::ColorNote;

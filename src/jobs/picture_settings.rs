@@ -8,23 +8,11 @@ use glam::DVec3;
 use super::files::file_for_each_step;
 use super::framing::{Aim, CameraSettings, FieldOfView, OBSERVER_FOV_DEG};
 use super::guides::Guides;
+use super::sheet::grid_size;
 use crate::pipeline::SurfaceOptions;
 use crate::render::{CameraError, PictureOptions, PictureSize};
 use crate::shape::Color;
 use crate::tessellate::Precision;
-
-/// Distance between the views of a sheet, in pixels.
-pub(super) const GAP: u32 = 4;
-
-/// The size of a sheet with `steps` steps and two views of `size` for each step.
-pub(super) fn sheet_size(size: PictureSize, steps: usize) -> Result<PictureSize, CameraError> {
-    let columns = (steps as u64).saturating_mul(u64::from(size.width() + GAP));
-    let width = columns.saturating_sub(u64::from(GAP));
-    PictureSize::new(
-        u32::try_from(width).unwrap_or(u32::MAX),
-        2 * size.height() + GAP,
-    )
-}
 
 /// Which pictures of a scene are drawn, and from where.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,7 +58,7 @@ pub struct PictureSettings {
     pub samples: NonZeroU32,
     /// The colour where nothing is seen.
     pub background: Color,
-    /// Marks in views from outside.
+    /// Marks that help to read the pictures.
     pub guides: Guides,
     /// How photosurfaces are made if the pictures show them. A limit on their triangles belongs to the placed scene;
     /// see [`Fitted`](crate::jobs::Fitted).
@@ -116,7 +104,7 @@ impl PictureSettings {
     /// An error is returned if a sheet has more pixels along one side than a picture may have.
     pub fn picture_size(&self, steps: usize) -> Result<PictureSize, CameraError> {
         match self.view {
-            PictureView::Sheet { .. } => sheet_size(self.camera.size, steps),
+            PictureView::Sheet { .. } => grid_size(self.camera.size, steps, 2),
             _ => Ok(self.camera.size),
         }
     }

@@ -26,6 +26,19 @@ pub enum RenderError {
         /// The size of the sheet, which is beyond the limit.
         source: CameraError,
     },
+    /// No scene is to stand side by side with others.
+    #[error("there is no scene, expected one for each column")]
+    NoColumn,
+    /// Scenes that are to stand side by side differ in their number of steps.
+    #[error("\"{label}\" has {found} steps beside one with {steps}, expected as many")]
+    Columns {
+        /// The label of the column.
+        label: String,
+        /// Number of its steps.
+        found: usize,
+        /// Number of steps of the first column.
+        steps: usize,
+    },
     /// There are no photosurfaces.
     #[error(transparent)]
     PlacedScene(#[from] PlacedSceneError),
@@ -61,6 +74,16 @@ pub struct Rendered {
     pub empty: Vec<EmptyView>,
     /// The cost of each view, in the order in which they were drawn; a sheet has two views for each step.
     pub costs: Vec<ViewCost>,
+}
+
+impl Rendered {
+    /// The facts about these pictures and others.
+    pub(super) fn with(mut self, other: Self) -> Self {
+        self.tally.merge(other.tally);
+        self.empty.extend(other.empty);
+        self.costs.extend(other.costs);
+        self
+    }
 }
 
 /// A view of the observer that shows only the background, because every object is in another direction or smaller than

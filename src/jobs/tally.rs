@@ -30,6 +30,21 @@ impl Tally {
             return;
         }
         self.uncertified += 1;
+        self.compare(facts);
+    }
+
+    /// Adds everything that another tally holds.
+    pub(super) fn merge(&mut self, other: Self) {
+        self.photosurfaces += other.photosurfaces;
+        self.triangles += other.triangles;
+        self.uncertified += other.uncertified;
+        if let Some(worst) = other.worst {
+            self.compare(&worst);
+        }
+    }
+
+    /// Keeps a photosurface if it is worse than the worst so far.
+    fn compare(&mut self, facts: &Facts) {
         let excess = |facts: &Facts| facts.certificate.total / facts.certificate.tolerance;
         // Written so that NaN counts as the worst.
         let better = |worst: &Facts| excess(facts) <= excess(worst);

@@ -1,6 +1,7 @@
 //! Single views of a scene: one step as the observer sees it, or some steps from outside.
 
 use std::ops::Range;
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
@@ -8,12 +9,14 @@ use glam::DVec3;
 use super::exposure::found_exposure;
 use super::extent::{middle_of_sky, outermost};
 use super::framing::{OutsideCamera, seen_vertices};
+use super::guides::Ghost;
 use super::legend::draw_ramp_legend;
 use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
 use super::progress::Progress;
 use super::rendered::{EmptyView, RenderError, Rendered, ViewCost};
 use crate::effects::Doppler;
-use crate::pipeline::{PlacedScene, PlacedSceneError};
+use crate::mesh::Mesh;
+use crate::pipeline::{PlacedScene, PlacedSceneError, SurfaceOptions};
 use crate::render::{
     Camera, Picture, PictureEffects, PictureOptions, Scenery, Strokes, Textures, Viewpoint,
     grid_places,
@@ -33,6 +36,10 @@ pub(super) struct Views<'a> {
     progress: &'a dyn Progress,
     /// All objects in their rest frames, for views by rays.
     at_rest: Option<Scenery>,
+    /// What casts shadows in views of photosurfaces, if the scene has lamps.
+    occluders: Option<Arc<Scenery>>,
+    /// Whether the observer's views are drawn by rays.
+    by_rays: bool,
     /// What the scene calls for, if it does.
     effects: Option<PictureEffects>,
     /// The first step whose photosurfaces have not been counted yet.
@@ -55,12 +62,16 @@ impl<'a> Views<'a> {
         };
         let effects = placed.scene().effects();
         let effects = effects.is_some().then(|| PictureEffects::new(effects));
+        let only_rays = matches!(settings.view, PictureView::Observer(PictureMethod::Rays));
+        let shows_mapped = !only_rays && !placed.scene().lamps().is_empty();
         Self {
             placed,
             settings,
             textures,
             progress,
             at_rest: by_rays.then(|| at_rest(placed, textures, effects.as_ref())),
+            occluders: shows_mapped.then(|| Arc::new(at_rest(placed, textures, None))),
+            by_rays,
             effects,
             next_step: 0,
             rendered: Rendered::default(),
@@ -101,7 +112,11 @@ impl<'a> Views<'a> {
 
     /// Nothing yet, with the effects that the scene calls for.
     fn scenery(&self) -> Scenery {
-        new_scenery(self.textures, self.effects.as_ref())
+        let mut scenery = new_scenery(self.placed, self.textures, self.effects.as_ref());
+        if let Some(occluders) = &self.occluders {
+            scenery.set_occluders(occluders);
+        }
+        scenery
     }
 
     /// The observer's camera at one step.
@@ -130,6 +145,15 @@ impl<'a> Views<'a> {
 
     /// A camera outside that has everything at every step in the picture, or stands at the position `from`.
     pub(super) fn outside_camera(&self, from: Option<DVec3>) -> Result<OutsideCamera, RenderError> {
+        let cameras = self
+            .settings
+            .camera
+            .outside_cameras(from, &[self.all_framed()?])?;
+        Ok(cameras[0])
+    }
+
+    /// The positions, in the observer's frame, that one camera outside has to have in the picture for all steps.
+    pub(super) fn all_framed(&self) -> Result<Vec<DVec3>, RenderError> {
         let mut all = Vec::new();
         for step in self.steps() {
             all.extend(self.framed(step)?);
@@ -141,8 +165,7 @@ impl<'a> Views<'a> {
         if self.settings.guides.axes {
             all.push(DVec3::ZERO);
         }
-        let cameras = self.settings.camera.outside_cameras(from, &[all])?;
-        Ok(cameras[0])
+        Ok(all)
     }
 
     /// A camera outside for each step; all have the same distance, or stand at the position `from`.
@@ -160,14 +183,19 @@ impl<'a> Views<'a> {
         let camera = self.observer_camera(fov_deg, &places)?;
         let moment = self.moment(step)?;
         let viewpoint = Viewpoint::Observer(&moment);
-        let (mut picture, cost) = match &self.at_rest {
-            Some(scenery) => self.take(scenery, &camera, viewpoint)?,
+        let (ghosts, edges) = self.ghosts(step)?;
+        let mut scenery = match self.at_rest.take() {
+            Some(at_rest) => at_rest,
             None => {
                 let mut scenery = self.scenery();
                 self.add_photosurfaces(&mut scenery, step)?;
-                self.take(&scenery, &camera, viewpoint)?
+                scenery
             }
         };
+        scenery.set_ghosts(ghosts);
+        let (mut picture, cost) = self.take(&scenery, &camera, viewpoint)?;
+        scenery.draw(&mut picture, &camera, viewpoint, &edges);
+        self.at_rest = Some(scenery).filter(|_| self.by_rays);
         self.rendered.costs.push(cost);
         let background = self.settings.background.0;
         let is_empty = picture.bytes().chunks(3).all(|pixel| pixel == background);
@@ -190,14 +218,14 @@ impl<'a> Views<'a> {
         if let Some(marker) = self.placed.marker() {
             scenery.add_in_view(marker);
         }
-        let mut edges: Vec<Strokes<DVec3>> = Vec::new();
+        let (mut ghosts, mut edges) = (Vec::new(), Vec::new());
         for step in steps {
             self.add_photosurfaces(&mut scenery, step)?;
-            for (mesh, ghost_edges) in settings.guides.ghosts(self.placed, step) {
-                scenery.add_ghost(mesh, ghost_edges.color);
-                edges.push(ghost_edges);
-            }
+            let of_step = self.ghosts(step)?;
+            ghosts.extend(of_step.0);
+            edges.extend(of_step.1);
         }
+        scenery.set_ghosts(ghosts);
         let viewpoint = Viewpoint::Outside(outside.place);
         let (mut picture, cost) = self.take(&scenery, &outside.camera, viewpoint)?;
         self.rendered.costs.push(cost);
@@ -207,6 +235,17 @@ impl<'a> Views<'a> {
             .draw(&mut picture, outside, &scenery, &edges, background);
         self.draw_legend(&mut picture);
         Ok(picture)
+    }
+
+    /// The ghosts of one step with their colours, and their edges.
+    fn ghosts(
+        &self,
+        step: usize,
+    ) -> Result<(Vec<(Mesh, Color)>, Vec<Strokes<DVec3>>), RenderError> {
+        let options = self.settings.surface_options;
+        let ghosts = self.settings.guides.ghosts(self.placed, step, options)?;
+        let colored = |(mesh, edges): Ghost| ((mesh, edges.color), edges);
+        Ok(ghosts.into_iter().map(colored).unzip())
     }
 
     pub(super) fn steps(&self) -> Range<usize> {
@@ -221,9 +260,13 @@ impl<'a> Views<'a> {
     }
 
     /// The positions, in the observer's frame, that a camera outside has to have in the picture at one step.
-    fn framed(&self, step: usize) -> Result<Vec<DVec3>, RenderError> {
+    pub(super) fn framed(&self, step: usize) -> Result<Vec<DVec3>, RenderError> {
         let mut places = self.seen_vertices(step)?;
-        for (mesh, _) in self.settings.guides.ghosts(self.placed, step) {
+        let options = SurfaceOptions {
+            subdivide: false,
+            ..self.settings.surface_options
+        };
+        for (mesh, _) in self.settings.guides.ghosts(self.placed, step, options)? {
             places.extend_from_slice(mesh.positions());
         }
         Ok(outermost(places))
@@ -278,18 +321,23 @@ impl<'a> Views<'a> {
     }
 }
 
-/// Nothing yet.
-fn new_scenery(textures: &Textures, effects: Option<&PictureEffects>) -> Scenery {
+/// Nothing yet, in the light of the scene's lamps.
+fn new_scenery(
+    placed: &PlacedScene,
+    textures: &Textures,
+    effects: Option<&PictureEffects>,
+) -> Scenery {
     let mut scenery = Scenery::with_textures(textures);
     if let Some(effects) = effects {
         scenery.set_effects(effects.clone());
     }
+    scenery.set_lamps(placed.scene());
     scenery
 }
 
 /// All objects of a scene in their rest frames.
 fn at_rest(placed: &PlacedScene, textures: &Textures, effects: Option<&PictureEffects>) -> Scenery {
-    let mut scenery = new_scenery(textures, effects);
+    let mut scenery = new_scenery(placed, textures, effects);
     for (object, parts) in placed.objects() {
         for (_, part) in parts {
             scenery.add_at_rest(object, part);

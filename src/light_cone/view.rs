@@ -78,6 +78,27 @@ impl View {
         self.place_size
     }
 
+    /// The view of an observer at the same place, with the same axes, for whom light takes no time: everything is shown at
+    /// its offset in the rest frame.
+    pub(super) fn at_rest(&self) -> Self {
+        let unmoved = Lorentz::IDENTITY.turned_by(self.rotation());
+        Self {
+            rest_to_observer: unmoved,
+            map: PhotosurfaceMap::new(&Velocity::ZERO),
+            ..*self
+        }
+    }
+
+    /// The same view of things that are given relative to the observer, each rounded by a few units in the last place of
+    /// `place_size`.
+    pub(super) fn with_observer_at_origin(&self, place_size: f64) -> Self {
+        Self {
+            observer_rest: DVec3::ZERO,
+            place_size,
+            ..*self
+        }
+    }
+
     /// The map from the rest frame to where points *are*, in the observer's frame, at the moment of observation.
     /// Objects are contracted along their motion there (Lorentz, FitzGerald), which nobody sees.
     ///

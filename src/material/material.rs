@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use glam::{DAffine2, DVec2};
 use serde_json::Value;
 
 use super::properties::{check, names_of_extensions, tex_coord, texture_index};
@@ -135,29 +134,6 @@ impl Material {
             .pointer("/pbrMetallicRoughness/baseColorTexture")?;
         let texture = self.textures.get(texture_index(info) as usize)?;
         Some((texture, tex_coord(info)))
-    }
-
-    /// Where on the texture of the base colour a texture coordinate is, and which `TEXCOORD_n` that is, if
-    /// another, as `KHR_texture_transform` says.
-    pub(crate) fn base_color_transform(&self) -> (DAffine2, Option<u64>) {
-        let transform = self
-            .properties
-            .pointer("/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform");
-        let Some(transform) = transform else {
-            return (DAffine2::IDENTITY, None);
-        };
-        let pair = |name: &str, default: f64| {
-            let number = |axis: usize| transform.get(name)?.get(axis)?.as_f64();
-            DVec2::new(number(0).unwrap_or(default), number(1).unwrap_or(default))
-        };
-        let turn = transform.get("rotation").and_then(Value::as_f64);
-        // Its angle is counter-clockwise, and v points down.
-        let placed = DAffine2::from_scale_angle_translation(
-            pair("scale", 1.0),
-            -turn.unwrap_or(0.0),
-            pair("offset", 0.0),
-        );
-        (placed, transform.get("texCoord").and_then(Value::as_u64))
     }
 
     /// What the opacity means.

@@ -4,6 +4,7 @@
 //! program does not know travels as well as what it knows, and no number changes on the way. What the program
 //! needs itself is read out of those words.
 
+mod appearance;
 mod error;
 mod material;
 mod part;
@@ -11,6 +12,7 @@ mod pixels;
 mod properties;
 mod texture;
 
+pub(crate) use appearance::Slot;
 pub use error::MaterialError;
 pub(crate) use material::position;
 pub use material::{AlphaMode, Material};

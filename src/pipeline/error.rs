@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::scene::InvalidScene;
 use crate::spacetime::MAX_RAPIDITY;
 
 /// Reasons why a scene and its models make no placed scene, or why a placed scene has no photosurfaces.
@@ -16,6 +17,9 @@ pub enum PlacedSceneError {
         /// Number of models.
         models: usize,
     },
+    /// A scene with each object under several models is not valid.
+    #[error(transparent)]
+    Scene(#[from] InvalidScene),
     /// A mesh has a vertex whose position is not finite in the object's rest frame.
     #[error("part \"{part}\" of object \"{object}\" has a vertex that is not finite")]
     NotFinite {
@@ -39,6 +43,17 @@ pub enum PlacedSceneError {
         who: String,
         /// The rapidity of its velocity.
         rapidity: f64,
+    },
+    /// What stands for an object without contraction is too large.
+    #[error(
+        "object \"{object}\" without contraction reaches {reach:.1e} from the observer, expected at most 1e150; \
+         expected a lower speed or another model"
+    )]
+    Reach {
+        /// The object in the scene.
+        object: String,
+        /// The largest distance of its stand-in from the observer, in scene units.
+        reach: f64,
     },
     /// The scene has no such step.
     #[error("step {step} of a scene with {steps} steps, expected less than {steps}")]

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::MomentFacts;
 use crate::scene::Scene;
-use crate::spacetime::{Integrator, Rotation, Segment, Steering};
+use crate::spacetime::{Integrator, Rotation, Segment, Steering, ViewModel};
 use crate::tessellate::Certificate;
 
 /// The facts about a photosurface, the same in files and in the report.
@@ -18,6 +18,13 @@ pub struct Facts {
     pub name: String,
     /// The object in the scene.
     pub object: String,
+    /// Which effects of special relativity the shape is shown with; absent for a photosurface, which has them all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub model: Option<ViewModel>,
+    /// How far files move the photosurface in the observer's frame, in scene units, so that it stands beside others; absent
+    /// where it stays.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub beside: Option<[f64; 3]>,
     /// The part of the object's model; empty where there is only one and it has no name.
     pub part: String,
     /// The `extras` of the part in the source, unchanged.

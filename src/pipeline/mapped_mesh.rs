@@ -3,7 +3,7 @@
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
-use crate::light_cone::{Batch, Extremes, View};
+use crate::light_cone::{Batch, Extremes, ModelView, View};
 use crate::mesh::Mesh;
 
 /// Smallest number of vertices that a thread processes at a time: enough to outweigh the cost of handing them over.
@@ -39,9 +39,12 @@ impl MappedMesh {
         }
     }
 
-    /// How many times, at most, the map magnifies a small error of a vertex.
-    pub(super) fn condition(&self, view: &View) -> f64 {
-        view.stretch_toward(self.extremes.forwardness)
+    /// How many times, at most, a small error of a vertex at rest is magnified.
+    pub(super) fn condition(&self, shown: &ModelView) -> f64 {
+        let of_stand_in = shown
+            .of_stand_in(0.0)
+            .stretch_toward(self.extremes.forwardness);
+        of_stand_in * shown.stretch().max(1.0)
     }
 }
 

@@ -16,6 +16,7 @@ mod placed_object;
 mod placed_scene;
 mod plan;
 mod predicting;
+mod side_by_side;
 mod surface_options;
 mod together;
 mod vertex_data;

@@ -18,13 +18,19 @@ impl PlacedScene {
             let plans: Vec<Plan<'_>> = steps
                 .map(|step| self.plan(object, placed_object, step, wanted))
                 .collect();
-            let views: Vec<_> = plans.iter().map(|plan| *plan.view()).collect();
-            let parts = make_together(plans, wanted, placed_object.granted_together()).into_iter();
+            let shown: Vec<_> = plans.iter().map(|plan| plan.shown).collect();
+            let parts = make_together(placed_object, plans, wanted).into_iter();
             parts.map(move |surfaces| {
-                let steps = surfaces.into_iter().zip(&views).enumerate();
+                let steps = surfaces.into_iter().zip(&shown).enumerate();
                 steps
-                    .map(|(step, (surface, view))| {
-                        self.photosurface(object, step, view, surface, wanted)
+                    .map(|(step, (surface, shown))| {
+                        self.photosurface(
+                            object,
+                            (step, placed_object.beside),
+                            shown,
+                            surface,
+                            wanted,
+                        )
                     })
                     .collect()
             })

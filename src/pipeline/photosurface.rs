@@ -22,6 +22,8 @@ pub struct Photosurface {
     /// at all steps if they share one mesh. Files with `f32` store positions relative to the middle of this box, so
     /// that parts with a common corner have the same numbers there.
     pub around: (DVec3, DVec3),
+    /// How far files move the mesh, in the observer's frame, so that it stands beside others; zero unless asked for.
+    pub beside: DVec3,
     /// The requested attributes of the vertices.
     pub vertex_data: VertexData,
     /// The material of the part; `None` if the source has none.

@@ -1,12 +1,16 @@
 //! Objects in their rest frames, and the shapes of those that have one.
 
+use std::borrow::Cow;
+
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
+use crate::light_cone::{ModelView, View};
 use crate::material::Part;
 use crate::mesh::Mesh;
 use crate::scene::{Object, Source};
 use crate::shape::Shape;
+use crate::spacetime::length;
 
 /// If a shape has more facets than it may have, its allowed deviation is multiplied by this factor until it fits.
 const COARSER: f64 = 1.1;
@@ -23,6 +27,8 @@ pub(super) struct PlacedObject {
     /// Number of triangles that are kept whatever the budget: those of the object's meshes, or those of the coarsest
     /// form of its shape.
     pub(super) source_triangles: u64,
+    /// How far files move the object, in the observer's frame, so that it stands beside others.
+    pub(super) beside: DVec3,
     /// How many triangles refinement may add; `None` if there is no limit.
     pub(super) granted: Option<Granted>,
 }
@@ -69,6 +75,34 @@ impl PlacedObject {
         boxes.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
     }
 
+    /// What stands for the object under the model of `shown`, and the view of it.
+    pub(super) fn stand_in(&self, shown: &ModelView) -> (Cow<'_, Self>, View) {
+        let Some(to_stand_in) = shown.rest_to_stand_in() else {
+            return (Cow::Borrowed(self), shown.of_stand_in(0.0));
+        };
+        let stand_in = Self {
+            parts: stretched(&self.parts, &to_stand_in),
+            shaped: self.shaped.as_ref().map(|shaped| Shaped {
+                shape: shaped.shape.clone(),
+                model_to_rest: to_stand_in * shaped.model_to_rest,
+                largest_scale: shaped.largest_scale * shown.stretch().max(1.0),
+                deviation: shaped.deviation * shown.stretch().max(1.0),
+            }),
+            ..self.clone()
+        };
+        let reach = self.reach(shown.view().observer_rest());
+        (Cow::Owned(stand_in), shown.of_stand_in(reach))
+    }
+
+    /// The largest distance of any vertex from `place_rest`, or somewhat more.
+    pub(super) fn reach(&self, place_rest: DVec3) -> f64 {
+        let reach = |(low, high): (DVec3, DVec3)| {
+            let [low, high] = [low, high].map(|corner| (corner - place_rest).abs());
+            length(low.max(high))
+        };
+        self.bounds().map_or(0.0, reach)
+    }
+
     /// A sample of about `most` triangles, and for each part how many triangles each sampled one stands for. `None` if
     /// the object has no more than `most` triangles or has a shape.
     pub(super) fn sketch(&self, most: usize) -> Option<(Self, Vec<f64>)> {
@@ -93,6 +127,7 @@ impl PlacedObject {
             shaped: None,
             loosening: self.loosening,
             source_triangles: self.source_triangles,
+            beside: self.beside,
             granted: None,
         };
         Some((sketch, weights))
@@ -152,6 +187,17 @@ impl Shaped {
         });
         made.collect()
     }
+}
+
+/// Parts in the frame of a stand-in, from those at rest.
+pub(super) fn stretched(
+    parts: &[(String, Part)],
+    rest_to_stand_in: &DAffine3,
+) -> Vec<(String, Part)> {
+    let parts = parts.iter();
+    parts
+        .map(|(name, part)| (name.clone(), part.clone().transformed(rest_to_stand_in)))
+        .collect()
 }
 
 pub(super) fn triangle_count(parts: &[(String, Part)]) -> u64 {

@@ -12,15 +12,18 @@ use super::placed_object::{PlacedObject, Shaped, triangle_count};
 use super::plan::{Plan, Unrefined};
 use super::vertex_data::VertexData;
 use super::{MomentFacts, Photosurface, PlacedSceneError, SurfaceOptions};
-use crate::light_cone::View;
+use crate::light_cone::{ModelView, View};
 use crate::material::{Model, Part};
 use crate::scene::{Attribute, MarkerRadius, Object, Scene, Source, Tolerance};
 use crate::shape::{Appearance, Color, Shape};
-use crate::spacetime::{MAX_RAPIDITY, Velocity};
+use crate::spacetime::{MAX_RAPIDITY, Velocity, ViewModel};
 
 /// Name of the observer's marker in files.
 const MARKER_NAME: &str = "observer";
 const MARKER_RESOLUTION: u32 = 24;
+
+/// The largest distance from the observer, in scene units, of anything that stands for an object: its square is in `f64`.
+const MAX_REACH: f64 = 1e150;
 
 const A_STEP: &str = "whoever asks for a plan asks for a step of the scene";
 
@@ -115,15 +118,52 @@ impl PlacedScene {
                 parts,
                 shaped,
                 loosening: 1.0,
+                beside: DVec3::ZERO,
                 granted: None,
             });
         }
-        Ok(Self {
+        let placed = Self {
             scene,
             marker,
             objects,
             origins,
-        })
+        };
+        placed.check_stand_ins()?;
+        Ok(placed)
+    }
+
+    /// The same placed scene with all objects shown under one model; aims that a budget has loosened are reset.
+    ///
+    /// # Errors
+    ///
+    /// An error is returned if an object without contraction would be too large for `f64`.
+    pub fn with_model_for_all(mut self, model: ViewModel) -> Result<Self, PlacedSceneError> {
+        self.scene = self.scene.with_model_for_all(model);
+        for placed_object in &mut self.objects {
+            placed_object.loosening = 1.0;
+            placed_object.granted = None;
+        }
+        self.check_stand_ins()?;
+        Ok(self)
+    }
+
+    /// Checks that everything that stands for an object under its model has room in `f64`.
+    fn check_stand_ins(&self) -> Result<(), PlacedSceneError> {
+        for (object, placed_object) in self.scene.objects().iter().zip(&self.objects) {
+            if object.view_model() != ViewModel::Delayed {
+                continue;
+            }
+            for step in 0..self.scene.steps().len() {
+                let shown = self.model_view(object, step).expect(A_STEP);
+                let reach = placed_object.reach(shown.view().observer_rest());
+                let reach = reach * shown.stretch();
+                if !(reach <= MAX_REACH) {
+                    let object = object.name.clone();
+                    return Err(PlacedSceneError::Reach { object, reach });
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The same placed scene with one tolerance for all objects; aims that a budget has loosened are reset.
@@ -174,6 +214,15 @@ impl PlacedScene {
         Some(View::new(&moment, &object.world_line()))
     }
 
+    /// How the observer is shown an object under its model at one step, counted from 0; `None` if the scene has no such
+    /// step.
+    pub fn model_view(&self, object: &Object, step: usize) -> Option<ModelView> {
+        Some(ModelView::new(
+            self.view(object, step)?,
+            object.view_model(),
+        ))
+    }
+
     /// The observer's velocity in the rest frame of an object, at the step at which it is fastest.
     pub fn fastest_relative_velocity(&self, object: &Object) -> Velocity {
         let steps = 0..self.scene.steps().len();
@@ -200,11 +249,11 @@ impl PlacedScene {
         let objects = self.scene.objects().iter().zip(&self.objects);
         let made = objects.flat_map(move |(object, placed_object)| {
             let plan = self.plan(object, placed_object, step, wanted);
-            let view = *plan.view();
+            let (shown, beside) = (plan.shown, placed_object.beside);
             let surfaces = make(plan, wanted);
-            surfaces
-                .into_iter()
-                .map(move |surface| self.photosurface(object, step, &view, surface, wanted))
+            surfaces.into_iter().map(move |surface| {
+                self.photosurface(object, (step, beside), &shown, surface, wanted)
+            })
         });
         Ok(made)
     }
@@ -229,7 +278,11 @@ impl PlacedScene {
         let mut objects = self.scene.objects().iter().zip(boxes);
         objects.all(|(object, boxes)| {
             let view = self.view(object, step).expect(A_STEP);
-            let stretch = view.relative_velocity().rapidity().exp();
+            let longest = view.relative_velocity().rapidity().exp();
+            let stretch = match object.view_model() {
+                ViewModel::Seen => longest,
+                _ => longest * longest,
+            };
             // The fourth power of a Doppler factor may be larger than any position.
             let is_bright = self.scene.attributes().contains(Attribute::Radiance)
                 && stretch.powi(4) >= RANGE.end;
@@ -254,11 +307,11 @@ impl PlacedScene {
         step: usize,
         wanted: SurfaceOptions,
     ) -> Plan<'a> {
-        let view = self.view(object, step).expect(A_STEP);
+        let shown = self.model_view(object, step).expect(A_STEP);
         let tolerance = self.scene.tolerance(object);
         Plan::new(
             placed_object,
-            view,
+            shown,
             tolerance,
             wanted,
             placed_object.granted(step),
@@ -268,13 +321,13 @@ impl PlacedScene {
     pub(super) fn photosurface(
         &self,
         object: &Object,
-        step: usize,
-        view: &View,
+        (step, beside): (usize, DVec3),
+        shown: &ModelView,
         surface: Surface<'_>,
         wanted: SurfaceOptions,
     ) -> Photosurface {
         let steps = self.scene.steps();
-        let relative = view.relative_velocity();
+        let relative = shown.view().relative_velocity();
         let name = surface.name;
         let facts = Facts {
             name: match steps.len() {
@@ -282,6 +335,7 @@ impl PlacedScene {
                 _ => format!("{name}_{}", step_label(step)),
             },
             object: object.name.clone(),
+            model: Some(shown.model()).filter(|&model| model != ViewModel::Seen),
             part: surface.part.name.clone(),
             source: surface.part.extras.clone(),
             step,
@@ -292,15 +346,17 @@ impl PlacedScene {
             relative_rapidity: relative.rapidity(),
             vertices: surface.seen.mesh.positions().len(),
             triangles: surface.seen.mesh.triangles().len(),
-            condition: surface.seen.condition(view),
+            condition: surface.seen.condition(shown),
+            beside: (beside != DVec3::ZERO).then(|| beside.to_array()),
             certificate: surface.certificate,
         };
         Photosurface {
             facts,
-            vertex_data: VertexData::new(view, surface.part.mesh(), wanted.attributes),
+            vertex_data: VertexData::new(shown, surface.part.mesh(), wanted.attributes),
             material: surface.part.material.clone(),
             mesh: surface.seen.mesh,
             around: surface.around,
+            beside,
         }
     }
 }

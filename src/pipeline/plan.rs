@@ -8,17 +8,20 @@ use super::SurfaceOptions;
 use super::limits::{Limits, StepTolerance};
 use super::mapped_mesh::MappedMesh;
 use super::placed_object::PlacedObject;
-use crate::light_cone::View;
+use crate::light_cone::{ModelView, View};
 use crate::material::Part;
 use crate::scene::Tolerance;
 use crate::shape::Shape;
 use crate::tessellate::Allowance;
 
-/// The decisions for one object at one step: division of the tolerance, resolution of a shape, number of triangles.
+/// The decisions for one object, or what stands for it under its model, at one step: division of the tolerance, resolution of a shape, number of triangles.
 ///
 /// Nothing is refined or certified yet.
 pub(super) struct Plan<'a> {
-    pub(super) placed_object: &'a PlacedObject,
+    /// What stands for the object under its model; the object itself where it is `seen`.
+    pub(super) placed_object: Cow<'a, PlacedObject>,
+    /// How the object is shown.
+    pub(super) shown: ModelView,
     pub(super) tolerance: StepTolerance,
     /// The shape with the resolution that the tolerance asks for; `None` where the parts stay as they were placed.
     pub(super) shape: Option<Shape>,
@@ -50,22 +53,25 @@ impl<'a> Plan<'a> {
     /// Divides the tolerance and chooses the resolution of a shape, with `granted` triangles beyond those of the source.
     pub(super) fn new(
         placed_object: &'a PlacedObject,
-        view: View,
+        shown: ModelView,
         tolerance: Tolerance,
         wanted: SurfaceOptions,
         granted: u64,
     ) -> Self {
+        let (placed_object, view) = placed_object.stand_in(&shown);
         let seen = seen_parts(&view, &placed_object.parts);
-        let tolerance = StepTolerance::new(placed_object, view, tolerance, wanted.precision, &seen);
+        let tolerance =
+            StepTolerance::new(&placed_object, view, tolerance, wanted.precision, &seen);
         let mut plan = Self {
             placed_object,
+            shown,
             tolerance,
             shape: None,
             granted,
             seen,
         };
-        if let Some(shaped) = &placed_object.shaped {
-            let mesh = placed_object.parts[0].1.mesh();
+        if let Some(shaped) = &plan.placed_object.shaped {
+            let mesh = plan.placed_object.parts[0].1.mesh();
             let max_deviation = || match shaped.deviation {
                 // A flat shape has no other distance from itself.
                 0.0 => f64::INFINITY,
@@ -81,7 +87,7 @@ impl<'a> Plan<'a> {
         plan
     }
 
-    /// The observer's view of the object at this step.
+    /// The observer's view of what stands for the object at this step.
     pub(super) fn view(&self) -> &View {
         &self.tolerance.view
     }
@@ -123,11 +129,14 @@ impl<'a> Plan<'a> {
 
     /// The parts as they were placed, each of whose facets stands for `each` smaller ones.
     pub(super) fn draft_as_placed(&mut self, each: f64) -> Draft<'a> {
-        let parts = &self.placed_object.parts;
+        let parts: Cow<'a, [(String, Part)]> = match &self.placed_object {
+            Cow::Borrowed(placed_object) => (&placed_object.parts).into(),
+            Cow::Owned(placed_object) => placed_object.parts.clone().into(),
+        };
         let seen = std::mem::take(&mut self.seen);
         Draft {
-            limits: self.tolerance.limits(parts, &seen, each),
-            parts: parts.into(),
+            limits: self.tolerance.limits(&parts, &seen, each),
+            parts,
             seen,
         }
     }

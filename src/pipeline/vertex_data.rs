@@ -6,7 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::mapped_mesh::VERTICES_PER_JOB;
-use crate::light_cone::View;
+use crate::light_cone::ModelView;
 use crate::mesh::Mesh;
 use crate::scene::{Attribute, Attributes};
 
@@ -24,17 +24,22 @@ pub enum VertexValues {
 }
 
 impl VertexData {
-    /// The attributes of the vertices of a mesh at rest.
-    pub(super) fn new(view: &View, rest: &Mesh, wanted: Attributes) -> Self {
+    /// The attributes of the vertices of a mesh that stands for an object at rest.
+    pub(super) fn new(shown: &ModelView, stand_in: &Mesh, wanted: Attributes) -> Self {
         let numbers = |value: &(dyn Fn(DVec3) -> f64 + Sync)| {
-            let jobs = rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
+            let jobs = stand_in
+                .positions()
+                .par_iter()
+                .with_min_len(VERTICES_PER_JOB);
             VertexValues::Numbers(jobs.map(|&position| value(position)).collect())
         };
         let values = |attribute| match attribute {
-            Attribute::Doppler => numbers(&|position| view.doppler_factor(position)),
-            Attribute::EmissionTime => numbers(&|position| view.emission_time(position)),
-            Attribute::RestPosition => VertexValues::Vectors(rest.positions().to_vec()),
-            Attribute::Radiance => numbers(&|position| view.doppler_factor(position).powi(4)),
+            Attribute::Doppler => numbers(&|position| shown.stand_in_doppler_factor(position)),
+            Attribute::EmissionTime => numbers(&|position| shown.stand_in_emission_time(position)),
+            Attribute::RestPosition => VertexValues::Vectors(rest_positions(shown, stand_in)),
+            Attribute::Radiance => {
+                numbers(&|position| shown.stand_in_doppler_factor(position).powi(4))
+            }
         };
         let columns = wanted
             .iter()
@@ -89,6 +94,17 @@ impl VertexData {
             VertexValues::Numbers(numbers) => Some(numbers),
             VertexValues::Vectors(_) => None,
         }
+    }
+}
+
+/// The positions at rest of the vertices of a stand-in.
+fn rest_positions(shown: &ModelView, stand_in: &Mesh) -> Vec<DVec3> {
+    let positions = stand_in.positions();
+    match shown.stand_in_to_rest() {
+        None => positions.to_vec(),
+        Some(to_rest) => (positions.iter())
+            .map(|&position| to_rest.transform_point3(position))
+            .collect(),
     }
 }
 

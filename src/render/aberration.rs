@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::cone::Cone;
-use crate::spacetime::{Lorentz, Moment, WorldLine, unit};
+use crate::spacetime::{Moment, ViewModel, WorldLine, unit};
 
 /// How light that an observer sees at one event came, for everything that moves with one velocity.
 ///
@@ -22,13 +22,23 @@ use crate::spacetime::{Lorentz, Moment, WorldLine, unit};
 /// and `|v| = r`: nothing cancels at any speed. So a ray in the rest frame is followed along `v`, and where it
 /// hits after the distance `r l`, the thing is seen at the distance `l`: of several objects in
 /// different motion the one with the smallest `l` hides the others. `1 / r` is the Doppler factor.
+///
+/// # Models
+///
+/// Without the travel time of light, things are where they are now: `l (0, s)` in the observer's frame, a straight line in
+/// space along `v = s + (gamma - 1) n (n.s)` in the rest frame, where `gamma` undoes the contraction. Without contraction,
+/// what is seen is seen of something `gamma` times as long along `n`: the component of `v` along `n` is that much smaller.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aberration {
     /// The observer's place in the rest frame.
     observer_rest: DVec3,
     /// The observer's direction of motion in the rest frame.
     along: DVec3,
+    /// Of the observer in the rest frame; zero where light takes no time.
     rapidity: f64,
+    /// How many times as long as the object its stand-in is along the motion.
+    longer: f64,
+    model: ViewModel,
     /// `exp(rapidity)` and `exp(-rapidity)`.
     grow: f64,
     shrink: f64,
@@ -42,8 +52,10 @@ pub(super) struct RestRay {
     pub(super) origin: DVec3,
     /// A unit vector.
     pub(super) direction: DVec3,
-    /// Distance at rest over distance seen: the reciprocal of the Doppler factor.
+    /// Distance at rest over distance seen.
     pub(super) stretch: f64,
+    /// Frequency seen over frequency emitted: positive, and above 1 where what is seen comes closer.
+    pub(super) doppler: f64,
 }
 
 impl RestRay {
@@ -53,30 +65,35 @@ impl RestRay {
             origin,
             direction,
             stretch: 1.0,
+            doppler: 1.0,
         }
-    }
-
-    /// Frequency seen over frequency emitted: positive, and above 1 where what is seen comes closer.
-    pub(super) fn doppler(&self) -> f64 {
-        1.0 / self.stretch
     }
 }
 
 impl Aberration {
     /// How the observer of `moment` sees what moves along with `object`.
-    pub(super) fn new(moment: &Moment, object: &WorldLine) -> Self {
+    pub(super) fn new(moment: &Moment, object: &WorldLine, model: ViewModel) -> Self {
         let rest_to_observer = moment.rest_to_observer(object.velocity);
         let relative = rest_to_observer.boost_velocity();
-        // Differences are taken of the events as they are given, before anything grows by `gamma`.
-        let start = Lorentz::boost(object.velocity).apply(moment.origin() - object.origin);
-        let way = moment.displacements_in(object.velocity);
-        let event = way.fold(start, |event, leg| event + leg);
+        let event = moment.event_at_rest_with(object);
+        let gamma = relative.rapidity().cosh();
+        let rapidity = if model.has_delay() {
+            relative.rapidity()
+        } else {
+            0.0
+        };
         Self {
             observer_rest: event.position,
             along: relative.direction(),
-            rapidity: relative.rapidity(),
-            grow: relative.rapidity().exp(),
-            shrink: (-relative.rapidity()).exp(),
+            rapidity,
+            longer: match model {
+                ViewModel::Seen | ViewModel::Rest => 1.0,
+                ViewModel::Delayed => gamma,
+                ViewModel::Contracted => gamma.recip(),
+            },
+            model,
+            grow: rapidity.exp(),
+            shrink: (-rapidity).exp(),
             observer_to_boosted: DMat3::from_quat(rest_to_observer.rotation().inverse()),
         }
     }
@@ -88,30 +105,43 @@ impl Aberration {
             par,
             stretch,
         } = self.light(seen);
+        let doppler = match self.model {
+            ViewModel::Seen => 1.0 / stretch,
+            // The classical factor: clocks are not slowed.
+            ViewModel::Delayed => self.longer / stretch,
+            ViewModel::Contracted | ViewModel::Rest => 1.0,
+        };
         // Scaled before it is squared: `stretch` may be as large as exp(700).
-        let direction = across / stretch + self.along * (par / stretch);
+        let direction = across / stretch + self.along * (par / stretch / self.longer);
+        let longer = match self.model {
+            ViewModel::Seen | ViewModel::Rest => 1.0,
+            ViewModel::Delayed | ViewModel::Contracted => direction.length(),
+        };
         RestRay {
             origin: self.observer_rest,
             direction: direction.normalize(),
-            stretch,
+            stretch: stretch * longer,
+            doppler,
         }
-    }
-
-    /// The Doppler factor of what is seen in the unit direction `seen`: frequency seen over frequency emitted.
-    pub(super) fn doppler(&self, seen: DVec3) -> f64 {
-        1.0 / self.light(seen).stretch
     }
 
     /// The part of the observer's sky that a ball takes up, given in the rest frame.
     pub(super) fn cone(&self, center: DVec3, radius: f64) -> Cone {
         let boosted_to_observer = self.observer_to_boosted.transpose();
-        Cone::of_moving(
-            self.observer_rest,
-            self.along,
-            self.rapidity,
-            (center, radius),
-        )
-        .turned(|direction| boosted_to_observer * direction)
+        let ball = match self.longer {
+            1.0 => (center, radius),
+            longer => {
+                let offset = center - self.observer_rest;
+                let stretched = offset + self.along * ((longer - 1.0) * self.along.dot(offset));
+                // Everything of the stretched ball is in this one, roundings and all.
+                (
+                    self.observer_rest + stretched,
+                    (radius + 1e-12 * offset.length()) * longer.max(1.0),
+                )
+            }
+        };
+        Cone::of_moving(self.observer_rest, self.along, self.rapidity, ball)
+            .turned(|direction| boosted_to_observer * direction)
     }
 
     /// The unit normal at rest of a surface that has the normal `normal` where it is seen, in the unit
@@ -131,7 +161,9 @@ impl Aberration {
         let normal_along = normal.dot(self.along);
         let normal_across = self.along.cross(normal).cross(self.along);
         let slanted = self.along + across * self.rapidity.sinh();
-        unit(normal_across * stretch + slanted * normal_along)
+        let of_stand_in = normal_across * stretch + slanted * normal_along;
+        let longer = self.along * ((self.longer - 1.0) * self.along.dot(of_stand_in));
+        unit(of_stand_in + longer)
     }
 
     fn light(&self, seen: DVec3) -> Light {
@@ -168,7 +200,7 @@ mod tests {
     use glam::DQuat;
 
     use super::*;
-    use crate::spacetime::{Event, Rotation, Velocity};
+    use crate::spacetime::{Event, Lorentz, Rotation, Velocity};
 
     fn rotation(turn: DQuat) -> Rotation {
         Rotation::new(turn).unwrap()
@@ -200,8 +232,8 @@ mod tests {
                 let seen_from = line(0.5, DVec3::new(1.0, 2.0, -3.0), observer);
                 let thing = line(0.0, DVec3::new(0.25, -1.0, 2.0), object);
                 let turn = DQuat::from_rotation_arc(DVec3::Z, unit(other_way).unwrap());
-                let aberration =
-                    Aberration::new(&seen_from.moment(1.5).turned(rotation(turn)), &thing);
+                let moment = seen_from.moment(1.5).turned(rotation(turn));
+                let aberration = Aberration::new(&moment, &thing, ViewModel::Seen);
                 for seen in directions() {
                     let ray = aberration.ray(seen);
                     let distance = 3.0;
@@ -224,7 +256,7 @@ mod tests {
             let velocity = Velocity::from_rapidity(rapidity, DVec3::NEG_Z).unwrap();
             let observer = line(0.0, DVec3::ZERO, velocity);
             let thing = line(0.0, DVec3::ZERO, Velocity::ZERO);
-            let aberration = Aberration::new(&observer.moment(0.0), &thing);
+            let aberration = Aberration::new(&observer.moment(0.0), &thing, ViewModel::Seen);
             for seen in directions() {
                 let ray = aberration.ray(seen);
                 assert!(ray.stretch > 0.0 && ray.stretch.is_finite());
@@ -251,15 +283,15 @@ mod tests {
             let velocity = Velocity::from_beta(beta, DVec3::NEG_Z).unwrap();
             let observer = line(0.0, DVec3::ZERO, velocity);
             let thing = line(0.0, DVec3::ZERO, Velocity::ZERO);
-            let aberration = Aberration::new(&observer.moment(0.0), &thing);
+            let aberration = Aberration::new(&observer.moment(0.0), &thing, ViewModel::Seen);
+            let doppler = |seen| aberration.ray(seen).doppler;
             let at = |angle: f64| DVec3::new(0.6 * angle.sin(), 0.8 * angle.sin(), -angle.cos());
             let half = aberration.ray(at(beta.acos())).direction;
             assert!(half.z.abs() < 1e-14, "{beta}: {half}");
             let ring = at(f64::to_radians(unshifted));
-            assert!((aberration.doppler(ring) - 1.0).abs() < 1e-5, "{beta}");
-            assert_eq!(aberration.doppler(ring), aberration.ray(ring).doppler());
+            assert!((doppler(ring) - 1.0).abs() < 1e-5, "{beta}");
             let exact = at(((1.0 - 1.0 / velocity.gamma()) / beta).acos());
-            assert!((aberration.doppler(exact) - 1.0).abs() < 1e-14, "{beta}");
+            assert!((doppler(exact) - 1.0).abs() < 1e-14, "{beta}");
         }
     }
 
@@ -274,6 +306,7 @@ mod tests {
                 .moment(0.0)
                 .turned(rotation(turn)),
             &line(0.0, DVec3::Y, other),
+            ViewModel::Seen,
         );
         for seen in directions() {
             let (u, v) = seen.any_orthonormal_pair();

@@ -5,14 +5,15 @@ use glam::{DVec2, DVec3, Vec4};
 use super::aberration::{Aberration, RestRay};
 use super::bounds::Bounds;
 use super::caster::{Caster, MeshHit};
-use super::paint::Paint;
+use super::paint::{Paint, TexturePlaces};
 use super::ray::Ray;
+use super::shading::Facing;
 use super::shape_placement::SmoothHit;
 use super::sphere::Ball;
 use super::turned::Turned;
 use crate::mesh::Mesh;
 use crate::scene::Emission;
-use crate::spacetime::{WorldLine, unit};
+use crate::spacetime::{Velocity, ViewModel, WorldLine, unit};
 
 /// What has no corners is within a ball so much larger, roundings and all.
 const RADIUS_MARGIN: f64 = 1.0 + 1e-9;
@@ -20,6 +21,8 @@ const RADIUS_MARGIN: f64 = 1.0 + 1e-9;
 pub(super) struct Body {
     pub(super) geometry: Geometry,
     pub(super) paint: Paint,
+    /// The name of what it is a part of.
+    pub(super) object: String,
     /// Its own light, in place of its paint.
     pub(super) emission: Option<Emission>,
     pub(super) stands: Stands,
@@ -62,28 +65,54 @@ impl Geometry {
 #[derive(Clone, Copy)]
 pub(super) enum Stands {
     /// Its rest frame.
-    AtRest(WorldLine),
+    AtRest(WorldLine, ViewModel),
     /// The observer's, mapped from its rest frame as that observer sees it.
-    Mapped(Aberration),
+    Mapped(Mapped),
     /// The observer's frame, as it is.
     InView,
 }
 
+impl Stands {
+    /// In the scene frame, of what has one.
+    pub(super) fn velocity(&self) -> Option<Velocity> {
+        match self {
+            Self::AtRest(line, _) => Some(line.velocity),
+            Self::Mapped(mapped) => Some(mapped.velocity),
+            Self::InView => None,
+        }
+    }
+}
+
+/// How a photosurface comes from what is at rest.
+#[derive(Clone, Copy)]
+pub(super) struct Mapped {
+    /// Of the observer who sees it.
+    pub(super) aberration: Aberration,
+    pub(super) velocity: Velocity,
+    pub(super) model: ViewModel,
+    /// The number of the observer's moment in its scenery.
+    pub(super) moment: usize,
+}
+
 /// Where a ray meets a body, in the frame of the body's geometry.
-pub(super) struct BodyHit {
+pub(super) enum BodyHit {
+    Mesh(MeshHit),
+    Smooth(SmoothHit),
+}
+
+impl BodyHit {
     /// In units of the ray's direction.
-    pub(super) distance: f64,
-    /// Of any length.
-    normal: DVec3,
-    texture: DVec2,
-    vertex_color: Vec4,
-    /// The corners of a triangle.
-    corners: Option<[u32; 3]>,
+    pub(super) fn distance(&self) -> f64 {
+        match self {
+            Self::Mesh(hit) => hit.distance,
+            Self::Smooth(hit) => hit.distance,
+        }
+    }
 }
 
 /// What is seen in a direction.
 ///
-/// Distance, cosine and Doppler factor are apart: what light does with each of them is for
+/// Distance, angles and Doppler factor are apart: what light does with each of them is for
 /// [`PixelShader`](super::pixel_shader::PixelShader) to say.
 pub(super) struct Hit<'a> {
     /// The number of the body that is hit.
@@ -92,12 +121,12 @@ pub(super) struct Hit<'a> {
     pub(super) emission: Option<Emission>,
     /// From the eye, as it is seen.
     pub(super) distance: f64,
-    /// Of the angle between the ray and the normal on the side that is hit, from 0 to 1, in the rest frame of the body;
-    /// where viewpoint or body has no motion, in the frame in which things stand. 1 where the normal has no direction.
-    pub(super) cosine: f64,
+    /// Normal on the side that is hit and direction to the eye, in the rest frame of the body; where viewpoint or body has
+    /// no motion, in the frame in which things stand. The normal is towards the eye where it has no direction.
+    pub(super) facing: Facing,
     /// Frequency seen over frequency emitted; positive. 1 where viewpoint or body has no motion.
     pub(super) doppler: f64,
-    pub(super) texture: DVec2,
+    pub(super) texture: TexturePlaces,
     pub(super) vertex_color: Vec4,
     /// The corners of the triangle, as they are seen, where wires are wanted.
     pub(super) triangle: Option<[DVec3; 3]>,
@@ -106,21 +135,28 @@ pub(super) struct Hit<'a> {
 impl Body {
     /// The nearest hit farther than `beyond` and not as far as `limit`.
     pub(super) fn cast(&self, ray: &Ray, beyond: f64, limit: f64) -> Option<BodyHit> {
+        self.meet(ray, beyond, limit, self.paint.double_sided)
+    }
+
+    /// The same, with back sides of triangles if `both_sides`.
+    pub(super) fn meet(
+        &self,
+        ray: &Ray,
+        beyond: f64,
+        limit: f64,
+        both_sides: bool,
+    ) -> Option<BodyHit> {
         let (origin, direction) = (ray.origin(), ray.direction());
         match &self.geometry {
-            Geometry::Mesh(caster) => {
-                let hit = caster.cast(ray, beyond, limit, self.paint.double_sided)?;
-                let (normal, texture, vertex_color) = attributes(caster.mesh(), &self.paint, &hit);
-                Some(BodyHit {
-                    distance: hit.distance,
-                    normal,
-                    texture,
-                    vertex_color,
-                    corners: Some(hit.corners),
-                })
-            }
-            Geometry::Ball(ball) => ball.cast(origin, direction, beyond, limit).map(smooth),
-            Geometry::Turned(turned) => turned.cast(origin, direction, beyond, limit).map(smooth),
+            Geometry::Mesh(caster) => caster
+                .cast(ray, beyond, limit, both_sides)
+                .map(BodyHit::Mesh),
+            Geometry::Ball(ball) => ball
+                .cast(origin, direction, beyond, limit)
+                .map(BodyHit::Smooth),
+            Geometry::Turned(turned) => turned
+                .cast(origin, direction, beyond, limit)
+                .map(BodyHit::Smooth),
         }
     }
 
@@ -135,19 +171,26 @@ impl Body {
         aberration: Option<&Aberration>,
         wires: bool,
     ) -> Hit<'_> {
+        let Attributes {
+            normal,
+            texture,
+            vertex_color,
+        } = self.attributes(hit);
         let mapped = aberration.filter(|_| self.is_mapped());
         let (normal_rest, ray_rest) = match mapped {
             Some(aberration) => (
-                aberration.normal_at_rest(hit.normal, seen),
+                aberration.normal_at_rest(normal, seen),
                 aberration.ray(seen),
             ),
-            None => (unit(hit.normal), ray),
+            None => (unit(normal), ray),
         };
-        let cosine = normal_rest.map_or(1.0, |normal| normal.dot(ray_rest.direction));
-        let triangle = match (&self.geometry, hit.corners) {
-            (Geometry::Mesh(caster), Some(corners)) if wires && self.is_mapped() => {
+        let to_eye = -ray_rest.direction;
+        let normal = normal_rest.unwrap_or(to_eye);
+        let triangle = match (&self.geometry, hit) {
+            (Geometry::Mesh(caster), BodyHit::Mesh(hit)) if wires && self.is_mapped() => {
                 // A mesh holds no index beyond its vertices.
-                Some(corners.map(|corner| caster.mesh().positions()[corner as usize]))
+                let place = |corner| caster.mesh().positions()[corner as usize];
+                Some(hit.corners.map(place))
             }
             _ => None,
         };
@@ -155,33 +198,64 @@ impl Body {
             body: number,
             paint: &self.paint,
             emission: self.emission,
-            distance: hit.distance / ray.stretch,
-            cosine: cosine.abs().min(1.0),
-            doppler: ray_rest.doppler(),
-            texture: hit.texture,
-            vertex_color: hit.vertex_color,
+            distance: hit.distance() / ray.stretch,
+            facing: Facing {
+                normal: if normal.dot(to_eye) < 0.0 {
+                    -normal
+                } else {
+                    normal
+                },
+                to_eye,
+            },
+            doppler: ray_rest.doppler,
+            texture,
+            vertex_color,
             triangle,
         }
     }
 
+    /// How opaque it is where it is hit, from 0 to 1.
+    pub(super) fn opacity(&self, hit: &BodyHit) -> f32 {
+        if self.paint.is_opaque() {
+            return 1.0;
+        }
+        let Attributes {
+            texture,
+            vertex_color,
+            ..
+        } = self.attributes(hit);
+        self.paint.opacity_at(&texture, vertex_color)
+    }
+
+    fn attributes(&self, hit: &BodyHit) -> Attributes {
+        match (&self.geometry, hit) {
+            (Geometry::Mesh(caster), BodyHit::Mesh(hit)) => {
+                of_triangle(caster.mesh(), &self.paint, hit)
+            }
+            (_, BodyHit::Mesh(_)) => unreachable!("only meshes have triangles"),
+            (_, BodyHit::Smooth(hit)) => Attributes {
+                normal: hit.normal,
+                texture: [hit.texture; 4],
+                vertex_color: Vec4::ONE,
+            },
+        }
+    }
+
     fn is_mapped(&self) -> bool {
-        matches!(self.stands, Stands::Mapped(_))
+        matches!(self.stands, Stands::Mapped(..))
     }
 }
 
-/// The hit of a surface that has no corners.
-fn smooth(hit: SmoothHit) -> BodyHit {
-    BodyHit {
-        distance: hit.distance,
-        normal: hit.normal,
-        texture: hit.texture,
-        vertex_color: Vec4::ONE,
-        corners: None,
-    }
+/// What a body is where it is hit.
+struct Attributes {
+    /// Of any length, in the frame of the geometry.
+    normal: DVec3,
+    texture: TexturePlaces,
+    vertex_color: Vec4,
 }
 
-/// Normal, texture coordinates and colour between the corners of a triangle.
-fn attributes(mesh: &Mesh, paint: &Paint, hit: &MeshHit) -> (DVec3, DVec2, Vec4) {
+/// Attributes between the corners of a triangle.
+fn of_triangle(mesh: &Mesh, paint: &Paint, hit: &MeshHit) -> Attributes {
     let corners = hit.corners.map(|corner| corner as usize);
     let between = corners.into_iter().zip(hit.weights);
     let normals = mesh.normals().unwrap_or_default();
@@ -189,20 +263,25 @@ fn attributes(mesh: &Mesh, paint: &Paint, hit: &MeshHit) -> (DVec3, DVec2, Vec4)
         .clone()
         .filter_map(|(corner, weight)| Some(*normals.get(corner)? * weight))
         .sum();
-    let set = paint
-        .texture_set()
-        .and_then(|set| mesh.texture_coordinates().get(set));
-    let texture = set.map_or(DVec2::ZERO, |set| {
-        let weighted = between.clone();
-        weighted
-            .map(|(corner, weight)| set[corner].as_dvec2() * weight)
-            .sum()
-    });
-    let color = mesh.colors().map_or(Vec4::ONE, |colors| {
+    let mut texture = TexturePlaces::default();
+    for (place, &set) in texture.iter_mut().zip(paint.texture_sets()) {
+        let set = mesh.texture_coordinates().get(set);
+        *place = set.map_or(DVec2::ZERO, |set| {
+            let weighted = between.clone();
+            weighted
+                .map(|(corner, weight)| set[corner].as_dvec2() * weight)
+                .sum()
+        });
+    }
+    let vertex_color = mesh.colors().map_or(Vec4::ONE, |colors| {
         let weighted = between;
         weighted
             .map(|(corner, weight)| colors[corner] * weight as f32)
             .sum()
     });
-    (normal, texture, color)
+    Attributes {
+        normal,
+        texture,
+        vertex_color,
+    }
 }

@@ -11,8 +11,9 @@ use super::body::{Body, BodyHit, Hit, Stands};
 use super::bounds::Bounds;
 use super::cone::Cone;
 use super::ray::Ray;
+use super::shading::Facing;
 use super::tree::Tree;
-use crate::spacetime::{WorldLine, unit};
+use crate::spacetime::{ViewModel, WorldLine, unit};
 
 /// A distance at rest that is turned into one that is seen and back may be rounded by this part.
 const THERE_AND_BACK: f64 = 1.0 + 4.0 * f64::EPSILON;
@@ -52,22 +53,35 @@ struct Found {
     ray: RestRay,
 }
 
+/// What an observer sees of a place of a surface.
+pub(super) struct Observed<'a> {
+    pub(super) object: &'a str,
+    /// The number of the observer's moment, of those of a scenery.
+    pub(super) moment: usize,
+    /// From the observer, in the rest frame of the surface.
+    pub(super) offset_rest: DVec3,
+    /// The unit direction in which its light arrives, and how far away it is seen, where it is shown there.
+    pub(super) seen: Option<(DVec3, f64)>,
+    /// In the rest frame of the surface.
+    pub(super) facing: Facing,
+}
+
 impl<'a> Crowd<'a> {
     pub(super) fn new(bodies: impl Iterator<Item = &'a Body>, viewpoint: Viewpoint) -> Self {
         let eye = viewpoint.eye();
         let mut placed = Vec::new();
         // Where each group begins and the motion of those that are at rest in it.
-        let mut starts: Vec<(usize, Option<WorldLine>)> = Vec::new();
+        let mut starts: Vec<(usize, Option<(WorldLine, ViewModel)>)> = Vec::new();
         for body in bodies {
             let aberration = match (viewpoint, body.stands) {
-                (Viewpoint::Observer(moment), Stands::AtRest(line)) => {
-                    Some(Aberration::new(moment, &line))
+                (Viewpoint::Observer(moment), Stands::AtRest(line, model)) => {
+                    Some(Aberration::new(moment, &line, model))
                 }
-                (Viewpoint::Observer(_), Stands::Mapped(aberration)) => Some(aberration),
+                (Viewpoint::Observer(_), Stands::Mapped(mapped)) => Some(mapped.aberration),
                 _ => None,
             };
             let rests = match (&aberration, body.stands) {
-                (Some(_), Stands::AtRest(line)) => Some(line),
+                (Some(_), Stands::AtRest(line, model)) => Some((line, model)),
                 _ => None,
             };
             if starts.last().is_none_or(|&(_, last)| last != rests) {
@@ -118,7 +132,7 @@ impl<'a> Crowd<'a> {
             else {
                 return;
             };
-            let distance = hit.distance / path.ray.stretch;
+            let distance = hit.distance() / path.ray.stretch;
             let is_nearer = found.as_ref().is_none_or(|found| {
                 distance < found.distance || (distance == found.distance && body < found.body)
             });
@@ -143,7 +157,7 @@ impl<'a> Crowd<'a> {
                 let body = group.first + number as usize;
                 if let Some(hit) = self.bodies[body].0.cast(&path.prepared, 0.0, f64::MAX) {
                     let found = Found {
-                        distance: hit.distance / path.ray.stretch,
+                        distance: hit.distance() / path.ray.stretch,
                         body,
                         hit,
                         ray: path.ray,
@@ -163,12 +177,55 @@ impl<'a> Crowd<'a> {
         let (body, aberration) = &self.bodies[hit.body];
         match (aberration, body.stands) {
             (Some(_), _) => Some(hit.doppler),
-            (None, Stands::Mapped(aberration)) => {
+            (None, Stands::Mapped(mapped)) => {
                 let place = self.eye + seen * hit.distance;
-                Some(unit(place).map_or(1.0, |from_observer| aberration.doppler(from_observer)))
+                Some(unit(place).map_or(1.0, |seen| mapped.aberration.ray(seen).doppler))
             }
-            (None, Stands::AtRest(_) | Stands::InView) => None,
+            (None, Stands::AtRest(..) | Stands::InView) => None,
         }
+    }
+
+    /// Of a hit in the direction `seen`: what the observer sees of that place, also from outside. `None` of what has no
+    /// observer.
+    pub(super) fn observed(&self, hit: &Hit, seen: DVec3) -> Option<Observed<'a>> {
+        let &(body, aberration) = &self.bodies[hit.body];
+        let object = body.object.as_str();
+        if let Some(aberration) = aberration {
+            let ray = aberration.ray(seen);
+            let model = match body.stands {
+                Stands::AtRest(_, model) => model,
+                Stands::Mapped(mapped) => mapped.model,
+                Stands::InView => return None,
+            };
+            return Some(Observed {
+                object,
+                moment: 0,
+                offset_rest: ray.direction * (ray.stretch * hit.distance),
+                seen: (model == ViewModel::Seen).then_some((seen, hit.distance)),
+                facing: hit.facing,
+            });
+        }
+        let Stands::Mapped(mapped) = body.stands else {
+            return None;
+        };
+        let place = self.eye + seen * hit.distance;
+        let distance = place.length();
+        let from_observer = unit(place)?;
+        let ray = mapped.aberration.ray(from_observer);
+        let normal = mapped
+            .aberration
+            .normal_at_rest(hit.facing.normal, from_observer);
+        let to_eye = -ray.direction;
+        Some(Observed {
+            object,
+            moment: mapped.moment,
+            offset_rest: ray.direction * (ray.stretch * distance),
+            seen: (mapped.model == ViewModel::Seen).then_some((from_observer, distance)),
+            facing: Facing {
+                normal: normal.unwrap_or(to_eye),
+                to_eye,
+            },
+        })
     }
 
     /// Visits the groups that may be seen in a direction.
@@ -251,7 +308,7 @@ impl Group {
         let mut nearest: Option<(usize, BodyHit)> = None;
         self.tree.along(ray, limit, |number| {
             let body = self.first + number as usize;
-            let farthest = nearest.as_ref().map_or(limit, |(_, hit)| hit.distance);
+            let farthest = nearest.as_ref().map_or(limit, |(_, hit)| hit.distance());
             let is_first = nearest.as_ref().is_some_and(|&(first, _)| body < first);
             // Including what is as far as what was found.
             let reach = if is_first {
@@ -261,7 +318,7 @@ impl Group {
             };
             match bodies[body].0.cast(ray, beyond, reach) {
                 Some(hit) => {
-                    let distance = hit.distance;
+                    let distance = hit.distance();
                     nearest = Some((body, hit));
                     distance
                 }
@@ -356,7 +413,7 @@ mod tests {
                     }
                 }
                 let found = crowd.nearest(seen, 0.0, f64::MAX, false);
-                let told = |hit: Hit| (hit.distance, hit.cosine, hit.doppler, hit.texture);
+                let told = |hit: Hit| (hit.distance, hit.facing, hit.doppler, hit.texture);
                 assert_eq!(found.map(told), nearest.map(told), "{name} {seen}");
             }
         }
@@ -398,14 +455,17 @@ mod tests {
                     };
                     assert!((hit.doppler - doppler).abs() < 1e-14 * doppler, "{seen}");
                     // At rest, all of a ball is seen head-on from its middle.
-                    assert!(!is_ball || (hit.cosine - 1.0).abs() < 1e-14, "{seen}");
+                    assert!(
+                        !is_ball || (hit.facing.eye_cosine() - 1.0).abs() < 1e-14,
+                        "{seen}"
+                    );
                 }
                 // Straight ahead and behind, whatever the frame.
                 for (seen, for_observer) in [(DVec3::NEG_Z, 3.0), (DVec3::Z, 1.0 / 3.0)] {
                     let hit = crowd.nearest(seen, 0.0, f64::MAX, false).unwrap();
                     let doppler = if is_moving { for_observer } else { 1.0 };
                     assert!((hit.doppler - doppler).abs() < 1e-14);
-                    assert!((hit.cosine - 1.0).abs() < 1e-14);
+                    assert!((hit.facing.eye_cosine() - 1.0).abs() < 1e-14);
                     assert_eq!(hit.body, 0);
                     // From the middle too a photosurface is as the observer sees it.
                     let is_mapped = matches!(scenery.bodies[0].stands, Stands::Mapped(_));

@@ -4,11 +4,13 @@ use glam::{DVec2, DVec3, Vec3};
 
 use super::body::Hit;
 use super::crowd::Crowd;
+use super::crowd::Observed;
+use super::lighting::{Lighting, Surface};
+use super::paint::Look;
+use super::shading::head_light;
+use super::shadows::LitPlace;
 use super::{Camera, PictureEffects};
 use crate::effects::luminance;
-
-/// How bright a surface is that the lamp only grazes.
-pub(super) const AMBIENT: f32 = 0.25;
 
 /// Most surfaces one ray of light is followed through.
 const MAX_LAYERS: usize = 64;
@@ -40,6 +42,8 @@ pub(super) struct PixelShader<'a> {
     /// The colour of wires, and how they come to be on the picture.
     pub(super) wires: Option<(Vec3, &'a Camera)>,
     pub(super) effects: Option<&'a PictureEffects>,
+    /// Without lamps there is one at the eye.
+    pub(super) lit: Option<Lit<'a>>,
 }
 
 /// What comes along one ray.
@@ -76,7 +80,7 @@ impl PixelShader<'_> {
     fn light(&self, place: DVec2, seen: DVec3) -> Vec3 {
         let (mut light, distance) = self.solid_light(place, seen);
         for hit in self.ghosts.all(seen) {
-            let grazing = 1.0 - hit.cosine as f32;
+            let grazing = 1.0 - hit.facing.eye_cosine() as f32;
             let opacity = GHOST[0] + GHOST[1] * grazing * grazing;
             let behind = hit.distance > distance;
             let veiled = if behind { GHOST_BEHIND } else { 1.0 };
@@ -117,29 +121,19 @@ impl PixelShader<'_> {
                 behind = self.background * clearness;
                 break;
             };
-            let (color, opacity, wire) = self.surface(place, &hit);
-            if opacity > 0.0 {
+            let (look, wire) = self.surface(place, &hit);
+            if look.opacity > 0.0 {
                 first = first.min(hit.distance);
-            }
-            let bright = |color: DVec3| color * f64::from(brightness(&hit));
-            match self.effects {
-                None => {
-                    let color = wire.map_or(color, |wire| color.lerp(wire, WIRE));
-                    light += color * (brightness(&hit) * opacity * clearness);
-                }
-                Some(effects) => {
-                    let doppler = self.crowd.doppler(&hit, seen);
-                    let seen = match hit.emission {
-                        Some(emission) => effects.of_black_body(emission, doppler),
-                        None => bright(effects.of_surface(color, doppler)),
-                    };
-                    let seen = wire.map_or(seen, |wire| {
-                        seen.lerp(bright(wire.as_dvec3()), f64::from(WIRE))
-                    });
-                    strong += seen * f64::from(opacity * clearness);
+                let part = look.opacity * clearness;
+                match self.effects {
+                    None => light += plain_light(&look, wire, &hit) * part,
+                    Some(effects) => {
+                        let strong_light = self.strong_light(effects, &look, wire, &hit, seen);
+                        strong += strong_light * f64::from(part);
+                    }
                 }
             }
-            clearness *= 1.0 - opacity;
+            clearness *= 1.0 - look.opacity;
             if clearness < OPAQUE {
                 break;
             }
@@ -153,28 +147,110 @@ impl PixelShader<'_> {
         }
     }
 
-    /// Colour and opacity of what is hit, and the colour of a wire on it.
-    fn surface(&self, place: DVec2, hit: &Hit) -> (Vec3, f32, Option<Vec3>) {
-        let (color, opacity) = hit.paint.color_at(hit.texture, hit.vertex_color);
+    /// What the place that is hit looks like, and the colour of a wire on it.
+    fn surface(&self, place: DVec2, hit: &Hit) -> (Look, Option<Vec3>) {
+        let mut look = hit.paint.look(&hit.texture, hit.vertex_color);
         let (Some((wire, camera)), Some(triangle)) = (self.wires, hit.triangle) else {
-            return (color, opacity, None);
+            return (look, None);
         };
         let corners = triangle.map(|corner| corner - self.crowd.eye());
-        match is_on_edge(camera, corners, place) {
+        let is_wire = is_on_edge(camera, corners, place);
+        if is_wire {
             // Not opaque: where triangles are smaller than pixels all would be wire.
-            true => (color, opacity.max(WIRE), Some(wire)),
-            false => (color, opacity, None),
+            look.opacity = look.opacity.max(WIRE);
+        }
+        (look, is_wire.then_some(wire))
+    }
+
+    /// With effects, before the exposure: the light that the eye gets from a place of a surface.
+    fn strong_light(
+        &self,
+        effects: &PictureEffects,
+        look: &Look,
+        wire: Option<Vec3>,
+        hit: &Hit,
+        seen: DVec3,
+    ) -> DVec3 {
+        let doppler = self.crowd.doppler(hit, seen);
+        let head = || head_light(look.finish, hit.facing, look.open);
+        let light = if let Some(emission) = hit.emission {
+            effects.of_black_body(emission, doppler)
+        } else if hit.paint.unlit {
+            effects.of_surface(look.base_color, doppler)
+        } else {
+            let emitted = match look.emission == Vec3::ZERO {
+                true => DVec3::ZERO,
+                false => effects.of_surface(look.emission, doppler),
+            };
+            let lit = self.lit.as_ref().zip(self.crowd.observed(hit, seen));
+            let by_lamps = lit.and_then(|(lit, observed)| {
+                lit.light(effects, look, hit, &observed, doppler.unwrap_or(1.0))
+            });
+            let reflected =
+                by_lamps.unwrap_or_else(|| effects.of_head_light(look.base_color, head(), doppler));
+            emitted + reflected
+        };
+        match wire {
+            Some(wire) => light.lerp(wire.as_dvec3() * head().tinted, f64::from(WIRE)),
+            None => light,
         }
     }
 }
 
-/// How much of its colour what is hit shows by the lamp at the eye.
-fn brightness(hit: &Hit) -> f32 {
-    debug_assert!((0.0..=1.0).contains(&hit.cosine) && hit.doppler > 0.0);
-    match hit.paint.unlit {
-        true => 1.0,
-        false => AMBIENT + (1.0 - AMBIENT) * hit.cosine as f32,
+/// The lamps that light what is before the camera.
+pub(super) struct Lit<'a> {
+    /// The number of the frame of each body.
+    pub(super) frames: Vec<usize>,
+    /// For each moment of an observer.
+    pub(super) by_moment: Vec<Lighting<'a>>,
+    /// Whether the observer at the only moment takes the picture.
+    pub(super) observer: bool,
+}
+
+impl Lit<'_> {
+    /// The light of lamps that a surface reflects, before the exposure.
+    fn light(
+        &self,
+        effects: &PictureEffects,
+        look: &Look,
+        hit: &Hit,
+        observed: &Observed,
+        doppler: f64,
+    ) -> Option<DVec3> {
+        let moment = if self.observer { 0 } else { observed.moment };
+        let (lighting, frame) = (self.by_moment.get(moment)?, self.frames[hit.body]);
+        let (seen, distance) = match observed.seen {
+            Some(seen) => seen,
+            None => lighting.seen(frame, observed.offset_rest)?,
+        };
+        let surface = Surface {
+            place: LitPlace {
+                seen,
+                distance,
+                object: observed.object,
+            },
+            frame,
+            facing: observed.facing,
+            finish: look.finish,
+            open: look.open,
+        };
+        let mut sum = DVec3::ZERO;
+        lighting.light(&surface, effects.shifts(), |lit| {
+            sum += effects.of_lamp(look.base_color, &lit, doppler);
+        });
+        Some(sum)
     }
+}
+
+/// Without effects: the light that the eye gets from a place of a surface.
+fn plain_light(look: &Look, wire: Option<Vec3>, hit: &Hit) -> Vec3 {
+    debug_assert!(hit.doppler > 0.0);
+    let color = wire.map_or(look.base_color, |wire| look.base_color.lerp(wire, WIRE));
+    if hit.paint.unlit {
+        return color;
+    }
+    let reflected = head_light(look.finish, hit.facing, look.open);
+    color * reflected.tinted as f32 + reflected.white as f32 + look.emission
 }
 
 /// Whether a place of the picture is on an edge of a triangle, given by its corners from the eye.

@@ -7,20 +7,21 @@ use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::aberration::Aberration;
-use super::body::{Body, Geometry, Stands};
+use super::body::{Body, Geometry, Mapped, Stands};
 use super::caster::Caster;
 use super::crowd::Crowd;
+use super::lighting::{Lamps, Lighting};
 use super::paint::Paint;
 use super::picture::{Picture, encoded};
-use super::pixel_shader::PixelShader;
+use super::pixel_shader::{Lit, PixelShader};
 use super::sphere::Ball;
 use super::turned::Turned;
 use super::{Camera, PictureEffects, Strokes, Textures, Viewpoint};
 use crate::material::{Material, Part};
 use crate::mesh::Mesh;
-use crate::scene::{Effects, Emission, Object, Source};
+use crate::scene::{Effects, Emission, Object, Scene, Source};
 use crate::shape::{Appearance, Color, Shape};
-use crate::spacetime::Moment;
+use crate::spacetime::{Moment, Velocity};
 
 /// How far facets of a round shape are from it, as a part of its size: less than a tenth of a pixel where it fills
 /// a picture 1000 pixels wide.
@@ -35,12 +36,20 @@ const FACETS: f64 = 1e-4;
 ///
 /// # Shading
 ///
-/// A lamp shines from the eye: a surface is as bright as the cosine between its normal and the direction to
-/// the eye, on top of a little light from everywhere. For an observer in motion these are normal and
-/// direction in the *rest frame* of the object: there its surface scatters light, and only there does the angle say how
-/// much of it. In the observer's frame the photosurface of whatever comes towards the observer is so long
+/// A lamp shines from the eye, and a little light comes from all around, more from above: metal, roughness, occlusion and
+/// emission of materials are those of glTF, without normal maps and without most extensions (`KHR_materials_unlit`,
+/// `KHR_materials_emissive_strength` and `KHR_texture_transform` hold). For an observer in motion normal and directions are
+/// those in the *rest frame* of the object, "above" is +y there: there its surface scatters light, and only there do the
+/// angles say how much of it. In the observer's frame the photosurface of whatever comes towards the observer is so long
 /// that all of it would be seen at grazing incidence, and dark. For photosurfaces, normals are taken back to the rest
 /// frame; so both methods shade alike.
+///
+/// # Lamps
+///
+/// With [`Scenery::set_lamps`] lamps of a scene take the place of the lamp at the eye. Of each the event is found at which the
+/// light left that meets the surface when the surface's own light leaves for the observer; direction, strength and, with
+/// effects, colour are those in the rest frame of the surface. Opaque surfaces at rest cast shadows, an object not in the
+/// light of a lamp that rides on it, and itself not within 0.002 of its size.
 ///
 /// # Effects
 ///
@@ -79,6 +88,11 @@ pub struct Scenery {
     ghosts: Vec<(Body, Vec3)>,
     textures: Textures,
     effects: Option<PictureEffects>,
+    lamps: Option<Lamps>,
+    /// What casts shadows beside what is at rest in it.
+    occluders: Option<Arc<Scenery>>,
+    /// Of the observers of photosurfaces.
+    moments: Vec<Moment>,
 }
 
 /// How a picture is made.
@@ -127,7 +141,23 @@ impl Scenery {
         self.effects = Some(effects);
     }
 
-    /// Adds a part of `object`, at rest, in the object's rest frame.
+    /// Lights what moves by the lamps of a scene instead of the lamp at the eye, if the scene has some. Things in view, and
+    /// from outside things at rest, keep the lamp at the eye.
+    pub fn set_lamps(&mut self, scene: &Scene) {
+        self.lamps = Lamps::of(scene);
+        if self.lamps.is_some() {
+            self.effects
+                .get_or_insert_with(|| PictureEffects::new(Effects::default()));
+        }
+    }
+
+    /// What casts shadows in the light of lamps, beside what is at rest in this scenery: what is at rest in `at_rest`.
+    /// Photosurfaces cast none; what is at rest casts the shadows of theirs.
+    pub fn set_occluders(&mut self, at_rest: &Arc<Scenery>) {
+        self.occluders = Some(at_rest.clone());
+    }
+
+    /// Adds a part of `object`, at rest, in the object's rest frame, to be shown under the object's model.
     ///
     /// Spheres, cylinders, rods and cones are met as the surfaces that they are, whatever facets their parts have. A torus
     /// gets facets within a ten thousandth of its size, unless it has a resolution of its own: the
@@ -143,13 +173,13 @@ impl Scenery {
             },
             _ => Geometry::Mesh(Caster::new(part.mesh().clone())),
         };
-        let stands = Stands::AtRest(object.world_line());
+        let stands = Stands::AtRest(object.world_line(), object.view_model());
         self.add(geometry, part.material.as_ref(), &object.name, stands);
         self.glow(object.emission);
     }
 
-    /// Adds a photosurface of `object` as the observer of `moment` sees it, in the observer's frame with the observer at the
-    /// origin.
+    /// Adds a photosurface of `object` as the observer of `moment` sees it, or what is shown of it under another model, in the
+    /// observer's frame with the observer at the origin.
     pub fn add_photosurface(
         &mut self,
         object: &Object,
@@ -158,7 +188,13 @@ impl Scenery {
         material: Option<&Arc<Material>>,
     ) {
         let geometry = Geometry::Mesh(Caster::new(mesh.clone()));
-        let stands = Stands::Mapped(Aberration::new(moment, &object.world_line()));
+        let line = object.world_line();
+        let stands = Stands::Mapped(Mapped {
+            aberration: Aberration::new(moment, &line, object.view_model()),
+            velocity: line.velocity,
+            model: object.view_model(),
+            moment: self.number_of(moment),
+        });
         self.add(geometry, material, &object.name, stands);
         self.glow(object.emission);
     }
@@ -169,16 +205,19 @@ impl Scenery {
         self.add(geometry, part.material.as_ref(), &part.name, Stands::InView);
     }
 
-    /// Adds a thing that stands in the observer's frame and is only hinted at, in one colour.
-    pub fn add_ghost(&mut self, mesh: Mesh, color: Color) {
-        let paint = Paint::plain();
-        let body = Body {
-            geometry: Geometry::Mesh(Caster::new(mesh)),
-            paint,
-            emission: None,
-            stands: Stands::InView,
+    /// Sets all things that stand in the observer's frame and are only hinted at, each in one colour.
+    pub fn set_ghosts(&mut self, ghosts: impl IntoIterator<Item = (Mesh, Color)>) {
+        let ghost = |(mesh, color): (Mesh, Color)| {
+            let body = Body {
+                geometry: Geometry::Mesh(Caster::new(mesh)),
+                paint: Paint::plain(),
+                object: String::new(),
+                emission: None,
+                stands: Stands::InView,
+            };
+            (body, color.linear().into())
         };
-        self.ghosts.push((body, color.linear().into()));
+        self.ghosts = ghosts.into_iter().map(ghost).collect();
     }
 
     fn add(
@@ -191,9 +230,18 @@ impl Scenery {
         self.bodies.push(Body {
             geometry,
             paint: Paint::new(material, object, &self.textures),
+            object: object.to_owned(),
             emission: None,
             stands,
         });
+    }
+
+    /// The number of a moment among those of the observers of photosurfaces.
+    fn number_of(&mut self, moment: &Moment) -> usize {
+        if self.moments.last() != Some(moment) {
+            self.moments.push(moment.clone());
+        }
+        self.moments.len() - 1
     }
 
     /// Gives the body that was added last its own light, if it has one.
@@ -293,13 +341,42 @@ impl Scenery {
         background: Color,
         wires: Option<(Vec3, &'a Camera)>,
     ) -> PixelShader<'a> {
+        let lit = self.lamps.as_ref().map(|lamps| self.lit(lamps, viewpoint));
         PixelShader {
             crowd: Crowd::new(self.bodies.iter(), viewpoint),
+            lit,
             ghosts: Crowd::new(self.ghosts.iter().map(|(body, _)| body), viewpoint),
             ghost_colors: self.ghosts.iter().map(|&(_, color)| color).collect(),
             background: background.linear().into(),
             wires,
             effects: self.effects.as_ref(),
+        }
+    }
+
+    fn lit<'a>(&'a self, lamps: &'a Lamps, viewpoint: Viewpoint) -> Lit<'a> {
+        let mut velocities: Vec<Velocity> = Vec::new();
+        let mut frames = Vec::with_capacity(self.bodies.len());
+        for body in &self.bodies {
+            let velocity = body.stands.velocity().unwrap_or_default();
+            let known = velocities.iter().rposition(|&known| known == velocity);
+            frames.push(known.unwrap_or_else(|| {
+                velocities.push(velocity);
+                velocities.len() - 1
+            }));
+        }
+        let others = self.occluders.iter().flat_map(|scenery| &scenery.bodies);
+        let at = |moment: &Moment| {
+            let occluders = self.bodies.iter().chain(others.clone());
+            Lighting::new(lamps, moment, velocities.clone(), occluders)
+        };
+        let (by_moment, observer) = match viewpoint {
+            Viewpoint::Observer(moment) => (vec![at(moment)], true),
+            Viewpoint::Outside(_) => (self.moments.iter().map(at).collect(), false),
+        };
+        Lit {
+            frames,
+            by_moment,
+            observer,
         }
     }
 
@@ -350,20 +427,24 @@ fn fine_mesh(object: &Object, shape: &Shape, appearance: &Appearance, part: &Par
 mod tests {
     use serde_json::json;
 
-    use super::super::pixel_shader::AMBIENT;
     use super::super::{PictureSize, Projection};
     use super::*;
 
-    /// A large square at `z` that faces +z, of a linear colour and an opacity.
+    /// A large square at `z` that faces +z, of a linear colour and an opacity, which it has whatever the light.
     fn square(z: f64, base_color: [f32; 4], alpha_mode: &str, double_sided: bool) -> Part {
-        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-        let corners = corners.map(|(x, y)| DVec3::new(100.0 * x, 100.0 * y, z));
-        let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap();
         let material = json!({
             "pbrMetallicRoughness": { "baseColorFactor": base_color },
             "alphaMode": alpha_mode,
             "doubleSided": double_sided,
+            "extensions": { "KHR_materials_unlit": {} },
         });
+        square_of(z, material)
+    }
+
+    fn square_of(z: f64, material: serde_json::Value) -> Part {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corners = corners.map(|(x, y)| DVec3::new(100.0 * x, 100.0 * y, z));
+        let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap();
         let material = Material::new(material, vec![]).unwrap();
         Part::new("square", mesh, Some(Arc::new(material))).unwrap()
     }
@@ -444,15 +525,32 @@ mod tests {
         }
     }
 
+    /// Linear light of a matte square of linear grey `grey` and some emission, whose normal is +z, seen along `look`.
+    fn lit(grey: f64, emission: f64, look: DVec3) -> f64 {
+        let material = json!({
+            "pbrMetallicRoughness": { "baseColorFactor": [grey, grey, grey, 1.0], "metallicFactor": 0.0 },
+            "emissiveFactor": [emission, emission, emission],
+        });
+        let [level, ..] = Color(pixel(&[square_of(0.0, material)], -look, look)).linear();
+        f64::from(level)
+    }
+
+    /// Half a step of 8 bits, where steps are largest.
+    const HALF_STEP: f64 = 0.0045;
+
     #[test]
-    fn the_lamp_is_at_the_eye() {
-        let part = square(0.0, [1.0; 4], "OPAQUE", true);
-        let look = DVec3::new(3.0, 0.0, -4.0);
-        let [level, ..] = Color(pixel(&[part], -look, look)).linear();
-        // A cosine of 0.8, to half a step of 8 bits.
-        assert!(
-            (level - (AMBIENT + (1.0 - AMBIENT) * 0.8)).abs() < 0.005,
-            "{level}"
-        );
+    fn the_lamp_is_at_the_eye_and_matte_surfaces_do_not_burn_out() {
+        let ahead = lit(1.0, 0.0, DVec3::NEG_Z);
+        assert!((0.8..0.9).contains(&ahead), "{ahead}");
+        let grey = lit(0.25, 0.0, DVec3::NEG_Z);
+        // A gloss of a hundredth at most, whatever the colour.
+        assert!((grey - 0.25 * ahead).abs() < 0.01, "{grey} {ahead}");
+        let glowing = lit(0.25, 0.5, DVec3::NEG_Z);
+        assert!((glowing - grey - 0.5).abs() < 2.0 * HALF_STEP, "{glowing}");
+        let slanted = lit(1.0, 0.0, DVec3::new(3.0, 0.0, -4.0));
+        let grazed = lit(1.0, 0.0, DVec3::new(1.0, 0.0, -1e-3));
+        // The part of the lamp goes as the cosine, but for the gloss.
+        let expected = grazed + (ahead - grazed) * 0.8;
+        assert!((slanted - expected).abs() < 0.015, "{slanted} {expected}");
     }
 }

@@ -65,11 +65,19 @@ impl Textures {
     }
 
     /// The pixels of a texture of `object`, if it can be decoded.
-    pub(super) fn pixels(&self, texture: &Texture, object: &str) -> Option<Pixels> {
+    pub(super) fn pixels(
+        &self,
+        texture: &Texture,
+        bytes: BytesMean,
+        object: &str,
+    ) -> Option<Pixels> {
         // Without one that every program can read there are others, which are refused by their kind.
         let image = texture.image().or(texture.images().first())?;
         let picture = self.with(|decoded| decoded.picture(image, object))?;
-        let linear = std::array::from_fn(|byte| linear_of_byte(byte as u8));
+        let linear = std::array::from_fn(|byte| match bytes {
+            BytesMean::Color => linear_of_byte(byte as u8),
+            BytesMean::Number => byte as f32 / 255.0,
+        });
         Some(Pixels {
             image: picture,
             nearest: texture.is_magnified_by_nearest(),
@@ -117,6 +125,15 @@ impl Decoded {
     }
 }
 
+/// What the bytes of a texture's channels stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum BytesMean {
+    /// A colour, encoded in sRGB.
+    Color,
+    /// Numbers from 0 to 1, in even steps.
+    Number,
+}
+
 /// A decoded texture.
 pub(super) struct Pixels {
     image: Arc<RgbaImage>,
@@ -124,7 +141,7 @@ pub(super) struct Pixels {
     nearest: bool,
     /// Beyond left and right, and beyond top and bottom.
     wrap: [Wrap; 2],
-    /// Linear values of the 256 that a byte can say in sRGB.
+    /// What each of the 256 bytes stands for.
     linear: [f32; 256],
 }
 
@@ -206,9 +223,12 @@ mod tests {
     fn a_picture_is_decoded_once_and_shared() {
         let textures = Textures::new(16);
         let wood = texture("wood", png(4));
-        let first = textures.pixels(&wood, "a").unwrap();
+        let first = textures.pixels(&wood, BytesMean::Color, "a").unwrap();
         // The limit would be exceeded if it were decoded again.
-        let again = textures.clone().pixels(&wood, "b").unwrap();
+        let again = textures
+            .clone()
+            .pixels(&wood, BytesMean::Color, "b")
+            .unwrap();
         assert!(Arc::ptr_eq(&first.image, &again.image));
         assert!(textures.missing().is_empty());
     }
@@ -221,7 +241,11 @@ mod tests {
         let basis = texture("bark", b"\xabKTX 20\xbb\r\n\x1a\n".to_vec());
         for _ in 0..2 {
             for texture in [&broken, &large, &basis] {
-                assert!(textures.pixels(texture, "chair").is_none());
+                assert!(
+                    textures
+                        .pixels(texture, BytesMean::Color, "chair")
+                        .is_none()
+                );
             }
         }
         let missing: Vec<String> = textures
@@ -239,6 +263,10 @@ mod tests {
             ]
         );
         // What is too large takes nothing from what is left.
-        assert!(textures.pixels(&texture("small", png(4)), "x").is_some());
+        assert!(
+            textures
+                .pixels(&texture("small", png(4)), BytesMean::Color, "x")
+                .is_some()
+        );
     }
 }

@@ -34,6 +34,11 @@ pub const BUILT_IN_SCENES: &[BuiltInScene] = &[
         json: include_str!("../../examples/scenes/street.json"),
     },
     BuiltInScene {
+        name: "night",
+        summary: "down a street at night at 0.9 c, lit by its own lamps, light shifted in colour and brightness",
+        json: include_str!("../../examples/scenes/night.json"),
+    },
+    BuiltInScene {
         name: "snapshot",
         summary: "a sphere at 0.999 c and a cube at 0.8 c, as photographed by Hornof et al. 2025",
         json: include_str!("../../examples/scenes/snapshot.json"),
@@ -57,6 +62,11 @@ pub const BUILT_IN_SCENES: &[BuiltInScene] = &[
         name: "orbit",
         summary: "a full circle at 0.6 c",
         json: include_str!("../../examples/scenes/orbit.json"),
+    },
+    BuiltInScene {
+        name: "models",
+        summary: "a sphere and a cube at 0.9 c; try --models seen,delayed,contracted,rest --sheet",
+        json: include_str!("../../examples/scenes/models.json"),
     },
 ];
 

@@ -38,6 +38,9 @@ pub enum InvalidScene {
         /// The key that does not belong.
         field: &'static str,
     },
+    /// A lamp that rides on nothing.
+    #[error("lamps[{0}] rides on \"{1}\", expected the name of an object")]
+    LampObject(usize, String),
     /// No steps at all.
     #[error("the list of steps is empty, expected at least one proper time")]
     NoSteps,

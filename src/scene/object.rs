@@ -11,7 +11,7 @@ use super::forms::{self, FromObject, Keyed, VelocityForm};
 use super::{Emission, InvalidScene, Place, Scale, Tolerance};
 use crate::material::Model;
 use crate::shape::{Appearance, Color, Shape};
-use crate::spacetime::{Event, Rotation, Velocity, WorldLine};
+use crate::spacetime::{Event, Rotation, Velocity, ViewModel, WorldLine};
 
 /// A thing in uniform motion.
 ///
@@ -35,6 +35,8 @@ pub struct Object {
     pub velocity: Velocity,
     /// How far its photosurface may be from the true one, if not as far as the scene says.
     pub tolerance: Option<Tolerance>,
+    /// Which effects of special relativity its shape is shown with; if absent, those that the scene file says, or both.
+    pub model: Option<ViewModel>,
     /// Its own light, if it is a black body; pictures and colours of vertices show it in place of its material.
     pub emission: Option<Emission>,
 }
@@ -61,6 +63,7 @@ impl Object {
             scale: Scale::default(),
             velocity: Velocity::ZERO,
             tolerance: None,
+            model: None,
             emission: None,
         }
     }
@@ -71,6 +74,11 @@ impl Object {
             origin: Event::new(0.0, self.position.get()),
             velocity: self.velocity,
         }
+    }
+
+    /// Which effects of special relativity its shape is shown with.
+    pub fn view_model(&self) -> ViewModel {
+        self.model.unwrap_or_default()
     }
 
     /// From the coordinates of the model to the rest frame, origin at the object's origin.
@@ -120,6 +128,8 @@ struct ObjectFields {
     velocity: Velocity,
     /// How far this object's photosurface may be from the true one; as far as the scene says if absent.
     tolerance: Option<Tolerance>,
+    /// Which effects of special relativity this object's shape is shown with; those that the scene says if absent.
+    model: Option<ViewModel>,
     /// Makes the object a black body, which needs no lamp; its material then has no say.
     #[serde(default)]
     #[schemars(with = "Option<Emission>")]
@@ -160,6 +170,7 @@ impl TryFrom<FromObject<ObjectFields>> for Object {
             scale: fields.scale,
             velocity: fields.velocity,
             tolerance: fields.tolerance,
+            model: fields.model,
             emission: fields.emission.map(|FromObject(emission)| emission),
         })
     }

@@ -7,8 +7,11 @@ use serde::Deserialize;
 
 use super::forms::{FromObject, Keyed, Steps};
 use super::observer::{self, ObserverFields};
-use super::{Attributes, Effects, InvalidScene, Object, Observer, Tolerance, Units};
-use crate::spacetime::{Flight, Moment};
+use super::{
+    Attributes, Carrier, Effects, InvalidScene, Lamp, LampSource, Object, Observer, Tolerance,
+    Units,
+};
+use crate::spacetime::{Flight, Moment, ViewModel};
 
 /// A scene: an observer, objects, and the steps at which the observer looks.
 ///
@@ -25,6 +28,7 @@ pub struct Scene {
     steps: Vec<f64>,
     tolerance: Tolerance,
     attributes: Attributes,
+    lamps: Vec<Lamp>,
     effects: Effects,
 }
 
@@ -56,6 +60,7 @@ impl Scene {
             steps: vec![0.0],
             tolerance: Tolerance::default(),
             attributes: Attributes::default(),
+            lamps: vec![],
             effects: Effects::default(),
         })
     }
@@ -111,6 +116,37 @@ impl Scene {
         self
     }
 
+    /// The scene with all objects shown under this model, whatever they had.
+    #[must_use]
+    pub fn with_model_for_all(mut self, model: ViewModel) -> Self {
+        for object in &mut self.objects {
+            object.model = Some(model);
+        }
+        self
+    }
+
+    /// The scene with all objects under each of these models, whatever they had, one model after the other; each object has
+    /// the name of the model behind its own, as `ball_delayed`.
+    ///
+    /// # Errors
+    ///
+    /// No model, a model that is given twice, or an object that has such a name already.
+    pub fn with_each_model(self, models: &[ViewModel]) -> Result<Self, InvalidScene> {
+        let of_model = |&model: &ViewModel| {
+            self.objects.iter().map(move |object| Object {
+                name: format!("{}_{model}", object.name),
+                model: Some(model),
+                ..object.clone()
+            })
+        };
+        let objects: Vec<Object> = models.iter().flat_map(of_model).collect();
+        let checked = Self::new(self.observer.clone(), objects)?;
+        Ok(Self {
+            objects: checked.objects,
+            ..self
+        })
+    }
+
     /// The scene with these attributes asked for, and no others.
     #[must_use]
     pub fn with_attributes(mut self, attributes: Attributes) -> Self {
@@ -121,6 +157,29 @@ impl Scene {
     /// What is asked for at every vertex.
     pub fn attributes(&self) -> Attributes {
         self.attributes
+    }
+
+    /// The scene lit by these lamps, and by no others; without any, pictures have a lamp at the eye.
+    ///
+    /// # Errors
+    ///
+    /// A lamp on an object that the scene does not have.
+    pub fn with_lamps(mut self, lamps: Vec<Lamp>) -> Result<Self, InvalidScene> {
+        for (number, lamp) in lamps.iter().enumerate() {
+            if let LampSource::Point(point) = lamp.source()
+                && let Carrier::Object(name) = point.carrier()
+                && !self.objects.iter().any(|object| object.name == *name)
+            {
+                return Err(InvalidScene::LampObject(number, name.clone()));
+            }
+        }
+        self.lamps = lamps;
+        Ok(self)
+    }
+
+    /// The lamps that light the scene in pictures.
+    pub fn lamps(&self) -> &[Lamp] {
+        &self.lamps
     }
 
     /// The scene with these effects asked for, and no others.
@@ -202,9 +261,15 @@ struct SceneFields {
     /// How far photosurfaces may be from the true ones; a thousandth of their diagonal if absent.
     #[serde(default)]
     tolerance: Tolerance,
+    /// Which effects of special relativity shapes are shown with; both, as `seen`, if absent.
+    #[serde(default)]
+    model: ViewModel,
     /// What is computed and written for every vertex beside its place; nothing if absent.
     #[serde(default)]
     attributes: Attributes,
+    /// The lamps by which pictures of the scene are lit; without any, a lamp at the eye and a little light from above.
+    #[serde(default)]
+    lamps: Vec<Lamp>,
     /// What becomes of light on its way, beside shapes; nothing if absent.
     #[serde(default)]
     #[schemars(with = "Effects")]
@@ -217,7 +282,13 @@ impl TryFrom<FromObject<SceneFields>> for Scene {
     fn try_from(FromObject(fields): FromObject<SceneFields>) -> Result<Self, InvalidScene> {
         let units = fields.units.map(|FromObject(units)| units);
         let observer = fields.observer.observer(units)?;
-        let scene = Self::new(observer, fields.objects)?.with_steps(fields.steps.0)?;
+        let mut objects = fields.objects;
+        for object in &mut objects {
+            object.model.get_or_insert(fields.model);
+        }
+        let scene = Self::new(observer, objects)?
+            .with_steps(fields.steps.0)?
+            .with_lamps(fields.lamps)?;
         Ok(Self {
             title: fields.title,
             units,

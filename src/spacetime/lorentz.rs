@@ -70,7 +70,7 @@ impl Lorentz {
     }
 
     /// The same with a unit quaternion.
-    pub(super) fn turned_by(&self, rotation: DQuat) -> Self {
+    pub(crate) fn turned_by(&self, rotation: DQuat) -> Self {
         Self {
             boost: self.boost,
             rotation: (rotation * self.rotation).normalize(),

@@ -1,4 +1,4 @@
-//! Special relativity without objects or light: velocities, events, frames, worldlines, moments, flights.
+//! Special relativity without objects or light: velocities, events, frames, worldlines, moments, flights, models.
 //!
 //! Conventions: c = 1; the Minkowski interval is `-t^2 + x^2 + y^2 + z^2`; transformations are
 //! passive, they turn the coordinates of one frame into those of another.
@@ -11,6 +11,7 @@ mod moment;
 mod rotation;
 mod vector;
 mod velocity;
+mod view_model;
 mod world_line;
 
 pub use event::Event;
@@ -22,4 +23,5 @@ pub use moment::Moment;
 pub use rotation::{LookingError, Rotation, RotationError};
 pub(crate) use vector::{harmless_scale, heading, length, unit};
 pub use velocity::{MAX_RAPIDITY, Velocity, VelocityError};
+pub use view_model::{UnknownModel, ViewModel};
 pub use world_line::WorldLine;

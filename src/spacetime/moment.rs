@@ -152,6 +152,15 @@ impl Moment {
         Lorentz::boost(velocity.reversed()).then(&self.scene_to_observer)
     }
 
+    /// The event of the observation in the rest frame of `line`, counted from the event at which that has proper time 0.
+    ///
+    /// Differences are taken of the events as they are given, before anything grows by `gamma`.
+    pub(crate) fn event_at_rest_with(&self, line: &WorldLine) -> Event {
+        let start = Lorentz::boost(line.velocity).apply(self.origin() - line.origin);
+        let way = self.displacements_in(line.velocity);
+        way.fold(start, |event, leg| event + leg)
+    }
+
     /// The displacement from [`Moment::origin`], leg by leg, in the rest frame of something that moves with `velocity`.
     pub(crate) fn displacements_in(&self, velocity: Velocity) -> impl Iterator<Item = Event> {
         let legs = self.way.iter().flat_map(|part| match part {

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::random::Random;
 use super::true_surface::TrueSurface;
-use crate::light_cone::View;
+use crate::light_cone::ModelView;
 use crate::pipeline::{Photosurface, PlacedScene, SurfaceOptions};
 use crate::scene::{Attribute, Attributes, Unit};
 
@@ -70,13 +70,15 @@ pub(super) fn measure(
         let photosurfaces = placed.photosurfaces(step, wanted);
         let photosurfaces = photosurfaces.expect("a step of the scene");
         for (photosurface, object) in photosurfaces.zip(owners) {
-            let view = placed.view(object, step).expect("a step of the scene");
+            let shown = placed
+                .model_view(object, step)
+                .expect("a step of the scene");
             let surface = TrueSurface::of(object);
             let here = photosurface.facts.triangles;
             let places = (samples as f64 * here as f64 / triangles as f64).ceil() as usize;
             // Where there is no triangle there is no place.
             let places = if here == 0 { 0 } else { places.max(MIN_PLACES) };
-            let found = of_one(&photosurface, &view, surface.as_ref(), places);
+            let found = of_one(&photosurface, &shown, surface.as_ref(), places);
             worst = Measured {
                 length: worst.length.max(found.length),
                 of_tolerance: worst.of_tolerance.max(found.of_tolerance),
@@ -89,7 +91,7 @@ pub(super) fn measure(
 
 fn of_one(
     photosurface: &Photosurface,
-    view: &View,
+    shown: &ModelView,
     surface: Option<&TrueSurface>,
     places: usize,
 ) -> Measured {
@@ -109,7 +111,7 @@ fn of_one(
         let point = mix(corners.map(|corner| rest[corner]), weights);
         let point = surface.map_or(point, |surface| surface.nearest(point));
         Pair {
-            seen: view.seen_position(point),
+            seen: shown.shown_position(point),
             drawn: mix(corners.map(|corner| seen[corner]), weights),
         }
     };

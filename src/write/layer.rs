@@ -19,6 +19,8 @@ pub(super) struct Layer<'a> {
     pub(super) material: Option<&'a Arc<Material>>,
     /// The box around all that shares corners with it, if that is more.
     pub(super) around: Option<(DVec3, DVec3)>,
+    /// How far it is moved, so that it stands beside others.
+    pub(super) beside: DVec3,
     /// `None` for the observer's own marker: nothing moves.
     pub(super) facts: Option<&'a Facts>,
     pub(super) vertex_data: Option<&'a VertexData>,
@@ -91,6 +93,7 @@ impl<'a> From<&'a Part> for Layer<'a> {
             mesh: marker.mesh(),
             material: marker.material.as_ref(),
             around: None,
+            beside: DVec3::ZERO,
             facts: None,
             vertex_data: None,
         }
@@ -104,6 +107,7 @@ impl<'a> From<&'a Photosurface> for Layer<'a> {
             mesh: &photosurface.mesh,
             material: photosurface.material.as_ref(),
             around: Some(photosurface.around),
+            beside: photosurface.beside,
             facts: Some(&photosurface.facts),
             vertex_data: Some(&photosurface.vertex_data),
         }
@@ -111,6 +115,14 @@ impl<'a> From<&'a Photosurface> for Layer<'a> {
 }
 
 impl<'a> Layer<'a> {
+    /// Where a place is after the mesh has been moved; a mesh that stays keeps the signs of its zeros.
+    pub(super) fn moved(&self, place: DVec3) -> DVec3 {
+        match self.beside == DVec3::ZERO {
+            true => place,
+            false => place + self.beside,
+        }
+    }
+
     /// The numbers at every vertex that are asked for; the marker, at rest and seen where it is, has them too,
     /// for programs drop what not every mesh has.
     ///

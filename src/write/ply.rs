@@ -142,7 +142,7 @@ fn write_vertices(
         let normal = mesh
             .normals()
             .map_or(DVec3::ZERO, |normals| normals[vertex]);
-        for coordinate in position.to_array() {
+        for coordinate in layer.moved(*position).to_array() {
             writer.write_all(&coordinate.to_le_bytes())?;
         }
         for value in normal.to_array() {

@@ -235,6 +235,43 @@ class View:
     def seen(self, offset):
         return self.seen_event(offset)[1:]
 
+    def shown(self, model, offset):
+        """Where the point is shown under a model, by the model's own definition."""
+        if model == "seen":
+            return self.seen(offset)
+        now = self._now(offset) if model == "contracted" else self._whole(offset)
+        if model != "delayed":
+            return now
+        # It is at `now` at time 0 and moves on straight: its light left at the time t <= 0 with |now + v t| = -t.
+        v = [x / self._motion()[0] for x in self._motion()[1:]]
+        a, b, c = 1 - dot(v, v), -dot(now, v), -dot(now, now)
+        time = (-b - mp.sqrt(b * b - a * c)) / a
+        return [n + time * w for n, w in zip(now, v, strict=True)]
+
+    def _motion(self):
+        """The object's four-velocity in the observer's frame."""
+        return apply(self._to_observer, self.source.u)
+
+    def _now(self, offset):
+        """Where the point is at the moment of observation, in the observer's frame."""
+        at_zero = apply(self._to_scene, [mpf(0), *offset])
+        at_zero = [at_zero[0], *(x + p for x, p in zip(at_zero[1:], self.source.position, strict=True))]
+        start = apply(self._to_observer, [x - e for x, e in zip(at_zero, self.moment.event, strict=True)])
+        u = self._motion()
+        return [x - start[0] / u[0] * w for x, w in zip(start[1:], u[1:], strict=True)]
+
+    def _whole(self, offset):
+        """The point's offset from the observer in the object's rest frame, in the observer's axes.
+
+        It is what the point has now, made longer along the motion by what contraction takes.
+        """
+        now, motion = self._now(offset), self._motion()
+        if norm(motion[1:]) == 0:
+            return now
+        along = unit(motion[1:])
+        longer = (motion[0] - 1) * dot(along, now)
+        return [x + longer * n for x, n in zip(now, along, strict=True)]
+
     def doppler(self, offset):
         """Frequency seen over frequency emitted: proper time elapsed there per proper time here."""
         _, earlier = View(self.moment.after(-DIFFERENCE), self.source).emission(offset)

@@ -87,6 +87,23 @@ def test_shapes_as_ply_keep_double_precision(scene, export, placed_vertices):
     assert next(rows, None) is None
 
 
+@pytest.mark.parametrize("model", ["seen", "delayed", "contracted", "rest"])
+@pytest.mark.parametrize("scene", SHAPES, ids=SHAPE_NAMES)
+def test_every_model_is_what_it_says(scene, model, export, placed_vertices):
+    offsets = placed_vertices(scene["objects"][0]).positions.tolist()
+    found = ply.read(export({**scene, "model": model}, "--no-subdivide", to="out.ply"))
+    rows = iter(found.positions.tolist())
+    for view in views(scene):
+        # Without contraction the light comes from something as many times as long.
+        longer = view.relative_gamma() if model == "delayed" else 1
+        for offset in offsets:
+            offset = [mpf(x) for x in offset]
+            limit = ROUNDINGS * F64 * view.rounding_scale(offset) * longer
+            for coordinate, expected in zip(next(rows), view.shown(model, offset), strict=True):
+                assert abs(coordinate - expected) <= limit, f"{offset} {coordinate} {expected}"
+    assert next(rows, None) is None
+
+
 # The vertices that the oracle is given come from the program, for an observer at rest. That they are no
 # figment of it: a length there is off by some eight roundings of itself.
 AT_REST = 8 * 2**-53

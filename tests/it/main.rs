@@ -28,6 +28,8 @@ mod physics {
 mod effects {
     mod colours;
     mod exports;
+    mod lamps;
+    mod models;
     mod pictures;
 }
 
@@ -67,6 +69,7 @@ mod export {
 
 mod render {
     mod golden;
+    mod lamps;
     mod one_call;
     mod pictures;
 }
@@ -78,6 +81,7 @@ mod cli {
     mod faults;
     mod flags;
     mod flight;
+    mod models;
     mod render;
 }
 

@@ -240,8 +240,9 @@ impl<'a> GltfFile<'a> {
         let mesh = self.document.mesh(&mesh)?;
         // `gltf::json` has no room for the offset in f64.
         let mut node = json!({ "name": name, "mesh": mesh });
-        if packing.offset != DVec3::ZERO {
-            node["translation"] = json!(packing.offset.to_array());
+        let translation = layer.moved(packing.offset);
+        if translation != DVec3::ZERO {
+            node["translation"] = json!(translation.to_array());
         }
         if let Some(extras) = extras {
             node["extras"] = extras;

@@ -30,7 +30,8 @@ fn every_built_in_scene_exports() {
         .lines()
         .filter_map(|line| line.split_whitespace().next())
         .collect();
-    let expected = "sphere, cube, lattice, street, snapshot, flight, takeoff, turn, orbit";
+    let expected =
+        "sphere, cube, lattice, street, night, snapshot, flight, takeoff, turn, orbit, models";
     assert_eq!(names.join(", "), expected);
     for name in names {
         workplace

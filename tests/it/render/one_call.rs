@@ -1,7 +1,8 @@
 //! Pictures that the library draws with one call: the bytes are those of the command, and whoever calls may stop the work.
 
-use photosurface::jobs::{Aim, FieldOfView, FramingError, Ghost, RenderError, Rendered};
+use photosurface::jobs::{Aim, FieldOfView, FramingError, RenderError, Rendered};
 use photosurface::render::{Picture, PictureSize};
+use photosurface::spacetime::ViewModel;
 use photosurface::{
     DVec3, PictureMethod, PictureSettings, PictureView, PlacedScene, Progress, Scene, Textures,
     load_models, render, render_to_files,
@@ -106,7 +107,7 @@ fn one_call_writes_the_files_of_the_command() {
 fn settings_mean_what_flags_of_the_command_do() {
     let workplace = Workplace::with_ball();
     let mut outside = settings(OUTSIDE);
-    outside.guides.ghosts = vec![Ghost::Rest, Ghost::Contracted];
+    outside.guides.ghosts = vec![ViewModel::Rest, ViewModel::Contracted];
     outside.guides.axes = true;
     outside.guides.scale_bar = true;
     outside.guides.wireframe = true;

@@ -166,6 +166,35 @@ fn scenes() -> Vec<(&'static str, Value, DVec3, f64)> {
             24.0,
         ),
         (
+            "delayed cube",
+            json!({ "observer": passing, "model": "delayed", "objects": [
+                { "name": "cube", "shape": { "box": { "size": [2, 2, 2] } }, "color": "#ff0000", "position": [0.5, 3, 0] },
+            ]}),
+            DVec3::new(-0.9, 0.42, 0.0),
+            40.0,
+        ),
+        (
+            "contracted sphere",
+            json!({ "observer": { "velocity": { "beta": 0.8, "direction": [-1, 0, 0.3] } }, "model": "contracted", "objects": [
+                { "name": "sphere", "shape": { "sphere": { "radius": 1 } }, "color": "#ff0000", "position": [0.5, 3, -2] },
+            ]}),
+            DVec3::new(0.1, 0.83, -0.55),
+            45.0,
+        ),
+        (
+            "three models",
+            json!({ "observer": { "velocity": { "beta": 0.9 } }, "objects": [
+                { "name": "cube", "shape": { "box": { "size": [2, 2, 2] } }, "color": "#ff0000", "checker": "#0000ff",
+                  "rotation": [0.1, 0.3, 0, 0.9486833], "position": [1, 0.2, -6], "model": "rest" },
+                { "name": "torus", "shape": { "torus": { "major_radius": 1, "minor_radius": 0.4 } }, "color": "#00ff00",
+                  "rotation": [0.7071068, 0, 0, 0.7071068], "position": [-1.5, 0, -8], "model": "contracted" },
+                { "name": "sphere", "shape": { "sphere": { "radius": 1 } }, "color": "#ff0000",
+                  "position": [0, 1.5, 4], "velocity": { "beta": 0.3, "direction": [1, 0, 0] }, "model": "delayed" },
+            ]}),
+            DVec3::new(0.0, 0.1, -1.0),
+            60.0,
+        ),
+        (
             "thrust",
             json!({ "observer": { "flight": [{ "proper_time": 5, "acceleration": [0.1, 0, -0.5] }] }, "steps": [1.9],
                 "objects": [
