@@ -32,19 +32,16 @@ pub fn within_gamut(color: DVec3) -> DVec3 {
     inside.max(DVec3::ZERO)
 }
 
-/// A colour in linear sRGB with channels from 0 to 1, for what has a tone curve of its own: colours that a screen shows stay,
-/// others go towards the grey of their luminance, and what is brighter than white is white.
+/// A colour in linear sRGB with channels from 0 to 1, for what is shown with a tone curve of its own: colours that a screen
+/// shows stay, and brighter ones are as bright as their hue can be. Infinite light is white.
 pub fn within_screen(color: DVec3) -> DVec3 {
     let color = within_gamut(color);
-    let (grey, most) = (luminance(color), color.max_element());
-    if most <= 1.0 {
-        return color;
+    let most = color.max_element();
+    match most {
+        _ if most <= 1.0 => color,
+        _ if color.is_finite() => color / most,
+        _ => DVec3::ONE,
     }
-    if !(grey < 1.0) {
-        return DVec3::ONE;
-    }
-    let inside = DVec3::splat(grey).lerp(color, (1.0 - grey) / (most - grey));
-    inside.clamp(DVec3::ZERO, DVec3::ONE)
 }
 
 /// A colour as a screen shows it, channels from 0 to 1: those up to 0.8 stay, brighter ones are compressed and turn white.
@@ -87,14 +84,12 @@ mod tests {
                 bounded.to_array().into_iter().all(fits),
                 "{color}: {bounded}"
             );
-            let expected = luminance(inside).min(1.0);
+            // The same hue.
+            let times = inside.max_element().max(1.0);
             assert!(
-                (luminance(bounded) - expected).abs() < 1e-14,
+                (bounded - inside / times).abs().max_element() < 1e-15,
                 "{color}: {bounded}"
             );
-            if inside.max_element() <= 1.0 {
-                assert_eq!(bounded, inside);
-            }
             let shown = tone(inside);
             assert!(shown.to_array().into_iter().all(fits), "{color}: {shown}");
         }

@@ -30,6 +30,9 @@ pub struct Facts {
     /// The `extras` of the part in the source, unchanged.
     #[serde(skip_serializing_if = "Option::is_none", serialize_with = "as_it_is")]
     pub source: Option<Arc<Value>>,
+    /// The light of the object if it is a black body, as scenes write it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub emission: Option<Value>,
     /// The step, counted from 0.
     pub step: usize,
     /// Proper time of the observer at this step, counted from the observation event, in scene units.
