@@ -141,7 +141,7 @@ pub fn held(factor: f64) -> f64 {
 ///
 /// # Accuracy
 ///
-/// To `5e-4` for any radiance that is a power of the factor up to `D^4` (`tests/it/effects/lamps.rs`): eight points for each
+/// To `2e-4` for any radiance that is a power of the factor up to `D^4` (`tests/it/effects/lamps.rs`): eight points for each
 /// part of the sky that the horizon of the surface cuts, and for each factor of `e^2`. Exact at rest, and for a radiance
 /// that is the same for all factors.
 pub fn sky_irradiance(motion: Velocity, normal: DVec3, mut visit: impl FnMut(f64, f64)) {

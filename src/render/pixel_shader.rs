@@ -79,6 +79,9 @@ impl PixelShader<'_> {
     /// The linear colour that is seen at a place of the picture, in the direction `seen`.
     fn light(&self, place: DVec2, seen: DVec3) -> Vec3 {
         let (mut light, distance) = self.solid_light(place, seen);
+        if self.ghost_colors.is_empty() {
+            return light;
+        }
         for hit in self.ghosts.all(seen) {
             let grazing = 1.0 - hit.facing.eye_cosine() as f32;
             let opacity = GHOST[0] + GHOST[1] * grazing * grazing;
