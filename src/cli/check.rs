@@ -4,11 +4,13 @@ use std::io::Write;
 
 use photosurface::jobs::EffectCost;
 use photosurface::pipeline::Prediction;
+use photosurface::spacetime::ViewModel;
 use photosurface::write::Format;
 use photosurface::{PictureMethod, PictureSettings, PictureView, PlacedScene};
 
 use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, predicted, total};
 use super::args::{InputArgs, ObserverArgs};
+use super::effects::EffectArgs;
 use super::input::Input;
 use super::messages::{Verbosity, counted, print_if_open, shown};
 use super::models::ModelArgs;
@@ -20,7 +22,7 @@ use super::wording::or_ply;
 ///
 /// Reads everything that an export would read, and writes nothing. For each object it prints: the number of parts; the
 /// highest speed relative to the observer; the triangles before refinement and, predicted, after it, summed over all steps;
-/// and whether every photosurface will be certified. Then the effects that the scene calls for, and about how long each
+/// and whether every photosurface will be certified. Then the models, effects and lamps that the scene calls for, and about how long each effect
 /// will take, as measured on a small sample: for the vertices of the export, and for a picture of the default size all of
 /// whose rays meet surfaces. An export with --animate=morph is not predicted: it has the triangles
 /// of all steps in one mesh.
@@ -34,6 +36,8 @@ pub(super) struct CheckArgs {
     observer: ObserverArgs,
     #[command(flatten)]
     model: ModelArgs,
+    #[command(flatten)]
+    effects: EffectArgs,
     #[command(flatten)]
     accuracy: AccuracyArgs,
     #[command(flatten)]
@@ -56,6 +60,7 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
     let verbosity = Verbosity::new(args.quiet, args.verbose);
     let input = Input::read(&args.input, &args.observer, verbosity)?;
     let scene = args.model.scene(args.accuracy.scene(input.scene));
+    let scene = args.effects.scene(scene);
     let placed = PlacedScene::new(scene, input.models)?;
     for (name, part) in placed.objects().flat_map(|(_, parts)| parts) {
         verbosity.detail(format_args!(
@@ -133,13 +138,22 @@ fn table(
     Ok(())
 }
 
-/// The effects that the scene calls for, with what each will cost.
+/// The models and effects that the scene calls for, with what each effect will cost.
 fn effects(
     placed: &PlacedScene,
     predictions: &[Prediction],
     out: &mut dyn Write,
 ) -> anyhow::Result<()> {
-    let costs = EffectCost::of_scene(placed.scene());
+    for model in ViewModel::ALL {
+        let objects = placed.scene().objects().iter();
+        let count = objects
+            .filter(|object| object.view_model() == model)
+            .count();
+        if model != ViewModel::Seen && count > 0 {
+            writeln!(out, "model {model}: {}", counted(count, "object"))?;
+        }
+    }
+    let costs = EffectCost::of(placed);
     if costs.is_empty() {
         return Ok(());
     }

@@ -5,11 +5,18 @@ use std::time::Instant;
 
 use glam::DVec3;
 
+use super::exposure::of_vertices;
+use super::framing::seen_vertices;
 use crate::effects::{Doppler, SeenLight, tone, within_gamut};
+use crate::pipeline::PlacedScene;
+use crate::render::{Scenery, Viewpoint};
 use crate::scene::{Exposure, Scene};
 
 /// Lights that are worked out for one measurement: some milliseconds.
 const SAMPLE: u32 = 20_000;
+
+/// Rays for one measurement of lamps, each with rays for shadows.
+const LIT_SAMPLE: usize = 2_000;
 
 /// What an effect of a scene costs on this computer, now: an estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,8 +30,44 @@ pub struct EffectCost {
 }
 
 impl EffectCost {
-    /// The effects that a scene calls for, each measured by itself; none if it calls for none.
-    pub fn of_scene(scene: &Scene) -> Vec<Self> {
+    /// The effects that a scene calls for, and its lamps, each measured by itself; none if it calls for none.
+    pub fn of(placed: &PlacedScene) -> Vec<Self> {
+        let mut costs = Self::of_scene(placed.scene());
+        if !placed.scene().lamps().is_empty() {
+            costs.extend(Self::of_lamps(placed));
+        }
+        costs
+    }
+
+    /// The lamps of a scene: the time for rays towards vertices, with and without them.
+    fn of_lamps(placed: &PlacedScene) -> Option<Self> {
+        let scene = placed.scene();
+        let moment = scene.moment(0)?;
+        let places = seen_vertices(placed, 0).ok()?;
+        let directions = of_vertices(&places, LIT_SAMPLE);
+        let mut scenery = Scenery::new();
+        for (object, parts) in placed.objects() {
+            for (_, part) in parts {
+                scenery.add_at_rest(object, part);
+            }
+        }
+        let mut seconds = [0.0; 2];
+        let mut met = 0;
+        for seconds in &mut seconds {
+            let start = Instant::now();
+            let viewpoint = Viewpoint::Observer(&moment);
+            met = scenery.luminances(viewpoint, &directions).len();
+            *seconds = start.elapsed().as_secs_f64();
+            scenery.set_lamps(scene);
+        }
+        Some(Self {
+            effect: "lamps",
+            start_seconds: 0.0,
+            seconds_each: (seconds[1] - seconds[0]).max(0.0) / met.max(1) as f64,
+        })
+    }
+
+    fn of_scene(scene: &Scene) -> Vec<Self> {
         let effects = scene.effects();
         let mut costs = Vec::new();
         if effects.doppler != Doppler::None {

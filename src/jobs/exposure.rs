@@ -42,7 +42,7 @@ pub(super) fn found_exposure(views: &Views, scenery: &Scenery) -> Result<Stops, 
 }
 
 /// Directions of some of the vertices, from the observer.
-fn of_vertices(places: &[DVec3], count: usize) -> Vec<DVec3> {
+pub(super) fn of_vertices(places: &[DVec3], count: usize) -> Vec<DVec3> {
     let every = places.len().div_ceil(count.max(1)).max(1);
     let some = places.iter().step_by(every);
     some.filter_map(|place| place.try_normalize()).collect()

@@ -147,6 +147,20 @@ fn check_says_what_each_effect_costs() {
         lines[1].starts_with("effect searchlight: about ") && lines[1].contains("1280 x 720"),
         "{both}"
     );
+    let by_flags = workplace.run("check ball.json --doppler ramp --searchlight --exposure auto");
+    for effect in ["effect doppler", "effect searchlight", "effect exposure"] {
+        assert!(by_flags.stdout_text().contains(effect), "{by_flags}");
+    }
+    let night = workplace
+        .run("check --example night --model rest")
+        .success();
+    for line in [
+        "effect lamps: about ",
+        "effect emission: about ",
+        "model rest: 45 objects",
+    ] {
+        assert!(night.stdout_text().contains(line), "{night}");
+    }
 }
 
 #[test]
