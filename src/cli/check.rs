@@ -2,9 +2,10 @@
 
 use std::io::Write;
 
-use photosurface::PlacedScene;
+use photosurface::jobs::EffectCost;
 use photosurface::pipeline::Prediction;
 use photosurface::write::Format;
+use photosurface::{PictureMethod, PictureSettings, PictureView, PlacedScene};
 
 use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, predicted, total};
 use super::args::{InputArgs, ObserverArgs};
@@ -19,7 +20,9 @@ use super::wording::or_ply;
 ///
 /// Reads everything that an export would read, and writes nothing. For each object it prints: the number of parts; the
 /// highest speed relative to the observer; the triangles before refinement and, predicted, after it, summed over all steps;
-/// and whether every photosurface will be certified. An export with --animate=morph is not predicted: it has the triangles
+/// and whether every photosurface will be certified. Then the effects that the scene calls for, and about how long each
+/// will take, as measured on a small sample: for the vertices of the export, and for a picture of the default size all of
+/// whose rays meet surfaces. An export with --animate=morph is not predicted: it has the triangles
 /// of all steps in one mesh.
 /// Exit status: 0 if the export will end with 0; 1 if it will end with 1 (not certified), or if the steps do not fit into one
 /// file but may fit into several (--split); 2 an error; 130 interrupted.
@@ -71,7 +74,10 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
         let wanted = args.accuracy.wanted_in(format, placed.scene());
         let fitted = args.accuracy.within_budget(placed, wanted, verbosity);
         let predictions = &fitted.predictions;
-        print_if_open(|out| table(&fitted.placed, predictions, out))?;
+        print_if_open(|out| {
+            table(&fitted.placed, predictions, out)?;
+            effects(&fitted.placed, predictions, out)
+        })?;
         args.accuracy
             .tell_beyond_budget(predicted(predictions), verbosity);
         if !predictions.iter().all(|prediction| prediction.reachable) {
@@ -124,5 +130,48 @@ fn table(
         counted(parts_of_all * steps, "photosurface"),
         total(predictions)
     )?;
+    Ok(())
+}
+
+/// The effects that the scene calls for, with what each will cost.
+fn effects(
+    placed: &PlacedScene,
+    predictions: &[Prediction],
+    out: &mut dyn Write,
+) -> anyhow::Result<()> {
+    let costs = EffectCost::of_scene(placed.scene());
+    if costs.is_empty() {
+        return Ok(());
+    }
+    // As many vertices for a triangle as there are at rest.
+    let vertices = placed.objects().zip(predictions);
+    let vertices = vertices.map(|((_, parts), prediction)| {
+        let meshes = || parts.iter().map(|(_, part)| part.mesh());
+        let vertices: usize = meshes().map(|mesh| mesh.positions().len()).sum();
+        let triangles: usize = meshes().map(|mesh| mesh.triangles().len()).sum();
+        prediction.triangles * vertices as f64 / triangles.max(1) as f64
+    });
+    let vertices: f64 = vertices.sum();
+    let picture = PictureSettings::new(PictureView::Observer(PictureMethod::Rays));
+    let (size, samples) = (picture.camera.size, f64::from(picture.samples.get()));
+    let rays = f64::from(size.width()) * f64::from(size.height()) * samples * samples;
+    for cost in costs {
+        let in_export = match cost.effect {
+            "doppler" | "emission" => format!(
+                "about {:.3} s for the colours of about {} vertices, ",
+                cost.seconds(vertices),
+                grouped_number(vertices)
+            ),
+            _ => String::new(),
+        };
+        writeln!(
+            out,
+            "effect {}: {in_export}about {:.3} s for a picture of {} x {} pixels",
+            cost.effect,
+            cost.seconds(rays),
+            size.width(),
+            size.height()
+        )?;
+    }
     Ok(())
 }

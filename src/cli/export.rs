@@ -7,15 +7,16 @@ use std::time::Instant;
 
 use anyhow::{Context, ensure};
 use clap::ValueEnum;
-use photosurface::jobs::{ExportError, ExportLevel, export_levels, write_report};
+use photosurface::jobs::{ColorNote, ExportError, ExportLevel, export_levels, write_report};
 use photosurface::pipeline::Facts;
 use photosurface::scene::Attribute;
 use photosurface::write::{Format, Playback, Report, StageTime, WriteError};
-use photosurface::{ExportSettings, Exported, PlacedScene};
+use photosurface::{ExportSettings, Exported, PlacedScene, Textures};
 
 use super::accuracy::{AccuracyArgs, DetailArgs};
 use super::args::{InputArgs, ObserverArgs, number};
-use super::input::Input;
+use super::effects::DopplerArgs;
+use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print, size, stdout_is_closed};
 use super::models::ModelsArgs;
 use super::output::{Bar, FileFormat, check_destinations, from_first_to_last, is_stdout};
@@ -37,6 +38,8 @@ pub(super) struct ExportArgs {
     input: InputArgs,
     #[command(flatten)]
     observer: ObserverArgs,
+    #[command(flatten)]
+    effects: DopplerArgs,
     #[command(flatten)]
     models: ModelsArgs,
     #[command(flatten)]
@@ -129,11 +132,12 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     }
     let path = output.path(&input.name);
     let scene = args.models.scene(args.accuracy.scene(input.scene));
+    let scene = args.effects.scene(scene);
     let placed = match args.models.side_by_side()? {
         [] => PlacedScene::new(scene, input.models)?,
         models => PlacedScene::side_by_side(scene, &input.models, models)?,
     };
-    let settings = args.settings(start);
+    let settings = args.settings(start, &input.textures);
     let levels = export_levels(&placed, &settings, format, &path).map_err(in_words_of_flags)?;
     check_destinations(levels.iter().flat_map(ExportLevel::outputs), &input.files)?;
     if format != Format::Ply {
@@ -148,16 +152,23 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
         })?;
     }
     let mut status = Status::Done;
-    for level in levels {
-        if !export(args, level)? {
+    for (number, level) in levels.into_iter().enumerate() {
+        let (is_certified, notes) = export(args, level)?;
+        if !is_certified {
             status = Status::NotCertified;
         }
+        // Of all levels of detail the same is to be said.
+        for note in notes.iter().filter(|_| number == 0) {
+            args.verbosity.note(note);
+        }
     }
+    tell_of_missing(&input.textures, placed.scene(), args.verbosity);
     Ok(status)
 }
 
-/// Makes and writes the photosurfaces of one level of detail; whether all of them are certified.
-fn export(args: &ExportArgs, level: ExportLevel) -> anyhow::Result<bool> {
+/// Makes and writes the photosurfaces of one level of detail; whether all of them are certified, and what is to be said of
+/// their colours.
+fn export(args: &ExportArgs, level: ExportLevel) -> anyhow::Result<(bool, Vec<ColorNote>)> {
     let verbosity = args.verbosity;
     let has_marker = level.placed().marker().is_some();
     let to_stdout = is_stdout(&level.files()[0]);
@@ -195,12 +206,13 @@ fn export(args: &ExportArgs, level: ExportLevel) -> anyhow::Result<bool> {
     if !to_stdout {
         verbosity.result(summary(&exported, has_marker));
     }
-    Ok(args.accuracy.is_kept(&exported.tally, verbosity))
+    let is_certified = args.accuracy.is_kept(&exported.tally, verbosity);
+    Ok((is_certified, exported.notes))
 }
 
 impl ExportArgs {
     /// The settings of the job; the input was read from `start` to now.
-    fn settings(&self, start: Instant) -> ExportSettings {
+    fn settings(&self, start: Instant, textures: &Textures) -> ExportSettings {
         let frames_per_second = self.output.fps;
         ExportSettings {
             split: self.output.split,
@@ -217,6 +229,7 @@ impl ExportArgs {
                 name: "read",
                 seconds: start.elapsed().as_secs_f64(),
             }],
+            textures: textures.clone(),
         }
     }
 }

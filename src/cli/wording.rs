@@ -18,6 +18,10 @@ pub(super) fn in_words_of_flags(error: ExportError) -> anyhow::Error {
         ExportError::MorphingAttributes => anyhow!(
             "--animate=morph shows one mesh, and attributes differ from step to step; use --animate=frames"
         ),
+        ExportError::MorphingColors => anyhow!(
+            "--animate=morph shows one mesh, and colours as the observer sees them (Doppler effect, black bodies) differ from \
+             step to step; use --animate=frames, or --doppler none"
+        ),
         ExportError::RepeatedLevel(tolerance) => {
             anyhow!("--lod names the tolerance {tolerance} twice")
         }

@@ -32,6 +32,18 @@ pub fn within_gamut(color: DVec3) -> DVec3 {
     inside.max(DVec3::ZERO)
 }
 
+/// A colour in linear sRGB with channels from 0 to 1, for what is shown with a tone curve of its own: colours that a screen
+/// shows stay, and brighter ones are as bright as their hue can be. Infinite light is white.
+pub fn within_screen(color: DVec3) -> DVec3 {
+    let color = within_gamut(color);
+    let most = color.max_element();
+    match most {
+        _ if most <= 1.0 => color,
+        _ if color.is_finite() => color / most,
+        _ => DVec3::ONE,
+    }
+}
+
 /// A colour as a screen shows it, channels from 0 to 1: those up to 0.8 stay, brighter ones are compressed and turn white.
 /// Channels of `color`, in linear sRGB, are 0 or more; infinite light is white.
 pub fn tone(color: DVec3) -> DVec3 {
@@ -66,8 +78,19 @@ mod tests {
         for color in colors() {
             let inside = within_gamut(color);
             assert!(inside.min_element() >= 0.0, "{color}: {inside}");
-            let shown = tone(inside);
+            let bounded = within_screen(color);
             let fits = |channel: f64| (0.0..=1.0).contains(&channel);
+            assert!(
+                bounded.to_array().into_iter().all(fits),
+                "{color}: {bounded}"
+            );
+            // The same hue.
+            let times = inside.max_element().max(1.0);
+            assert!(
+                (bounded - inside / times).abs().max_element() < 1e-15,
+                "{color}: {bounded}"
+            );
+            let shown = tone(inside);
             assert!(shown.to_array().into_iter().all(fits), "{color}: {shown}");
         }
     }

@@ -17,7 +17,7 @@ mod temperature;
 
 pub(crate) use color::{byte_of_linear, linear_of_byte, linear_of_srgb};
 pub use doppler::{Beyond, Doppler, Spectrum};
-pub use gamut::{luminance, tone, within_gamut};
+pub use gamut::{luminance, tone, within_gamut, within_screen};
 pub use lamps::{
     Arrival, PointLight, arrival, far_irradiance, from_point, held, point_irradiance,
     sky_irradiance,

@@ -32,13 +32,13 @@ pub(super) struct Planckian {
 /// A black body of one temperature.
 #[derive(Clone, Copy)]
 pub(super) struct Glow {
-    /// The natural logarithm of the luminance over that of daylight.
-    pub(super) log_luminance: f64,
     /// The colour in linear sRGB, white as daylight is, at luminance 1.
     pub(super) hue: DVec3,
+    log_excess: f64,
+    log_kelvin: f64,
 }
 
-/// Of a [`Glow`], with the logarithm of what the luminance is over that of light of one wavelength.
+/// The logarithm of what the luminance is over that of light of one wavelength, and the hue of a [`Glow`].
 #[derive(Clone, Copy)]
 struct Row {
     log_excess: f64,
@@ -53,14 +53,15 @@ impl Planckian {
         let first = at_daylight - before * STEP;
         let count = ((HOTTEST.max(daylight.kelvin()).ln() - first) / STEP).ceil() as usize;
         let row = |number: usize| {
-            let kelvin = (first + STEP * number as f64).exp();
+            let log_kelvin = first + STEP * number as f64;
+            let kelvin = log_kelvin.exp();
             let rows = daylight.eye().iter().enumerate();
             let light: DVec3 = rows
                 .map(|(row, &eye)| eye * planck(wavelength(row), kelvin))
                 .sum();
             let luminance = luminance(light);
             Row {
-                log_excess: luminance.ln() + exponent(MIDDLE, kelvin),
+                log_excess: luminance.ln() + exponent(MIDDLE, log_kelvin),
                 hue: light / luminance,
             }
         };
@@ -70,20 +71,24 @@ impl Planckian {
         }
     }
 
-    /// A black body of any temperature in kelvin, from 0 to infinity.
-    pub(super) fn at(&self, kelvin: f64) -> Glow {
+    /// A black body of any temperature from 0 to infinity, given by its natural logarithm.
+    pub(super) fn at(&self, log_kelvin: f64) -> Glow {
         let last = self.rows.len() - 1;
-        let place = (kelvin.ln() - self.first) / STEP;
+        let place = (log_kelvin - self.first) / STEP;
         if !(place > 0.0) {
-            let coldest = self.first.exp();
-            let fainter =
-                exponent(wavelength(COUNT - 1), kelvin) - exponent(wavelength(COUNT - 1), coldest);
-            return self.rows[0].glow(coldest, -fainter);
+            // The longest wavelength is all that is left.
+            let longest = wavelength(COUNT - 1);
+            let [fainter, colder] =
+                [longest, MIDDLE].map(|wavelength| exponent(wavelength, log_kelvin));
+            let [first_fainter, first_colder] =
+                [longest, MIDDLE].map(|wavelength| exponent(wavelength, self.first));
+            let excess = (colder - first_colder) - (fainter - first_fainter);
+            return self.rows[0].glow(excess, log_kelvin);
         }
         if place >= last as f64 {
             // Luminance grows as the temperature does.
             let brighter = (place - last as f64) * STEP;
-            return self.rows[last].glow(kelvin, brighter);
+            return self.rows[last].glow(brighter, log_kelvin);
         }
         let (before, part) = (place as usize, place.fract());
         let [low, high] = [self.rows[before], self.rows[before + 1]];
@@ -91,22 +96,34 @@ impl Planckian {
             log_excess: low.log_excess + part * (high.log_excess - low.log_excess),
             hue: low.hue.lerp(high.hue, part),
         };
-        between.glow(kelvin, 0.0)
+        between.glow(0.0, log_kelvin)
     }
 }
 
 impl Row {
-    fn glow(self, kelvin: f64, brighter: f64) -> Glow {
+    fn glow(self, more: f64, log_kelvin: f64) -> Glow {
         Glow {
-            log_luminance: self.log_excess - exponent(MIDDLE, kelvin) + brighter,
             hue: self.hue,
+            log_excess: self.log_excess + more,
+            log_kelvin,
+        }
+    }
+}
+
+impl Glow {
+    /// The natural logarithm of the luminance over that of daylight.
+    pub(super) fn log_luminance(&self) -> f64 {
+        match self.log_excess {
+            // Colder than all that has a light in `f64`: exponents beyond it would have no difference.
+            excess if excess.is_nan() => f64::NEG_INFINITY,
+            excess => excess - exponent(MIDDLE, self.log_kelvin),
         }
     }
 }
 
 /// The exponent of the cut-off of Planck's law.
-fn exponent(wavelength: f64, kelvin: f64) -> f64 {
-    SECOND_RADIATION_CONSTANT / wavelength / kelvin
+fn exponent(wavelength: f64, log_kelvin: f64) -> f64 {
+    SECOND_RADIATION_CONSTANT / wavelength * (-log_kelvin).exp()
 }
 
 #[cfg(test)]
@@ -120,16 +137,16 @@ mod tests {
         let table = Planckian::new(&daylight);
         for step in 0..4000 {
             let kelvin = 800.0 * 1.003f64.powi(step);
-            let found = table.at(kelvin);
+            let found = table.at(kelvin.ln());
             let light = daylight.seen_color(&Reflectance::Grey(1.0), kelvin / 6504.0);
             let expected = luminance(light);
-            let error = found.log_luminance - expected.ln();
+            let error = found.log_luminance() - expected.ln();
             assert!(error.abs() < 3e-5, "{kelvin}: {error:e}");
             let error = (found.hue - light / expected).abs().max_element();
             assert!(error < 3e-5, "{kelvin}: {error:e}");
         }
-        let exact = table.at(6504.0);
-        assert!(exact.log_luminance.abs() < 1e-12);
+        let exact = table.at(6504f64.ln());
+        assert!(exact.log_luminance().abs() < 1e-12);
         assert!((exact.hue - 1.0).abs().max_element() < 1e-12);
     }
 
@@ -137,9 +154,9 @@ mod tests {
     #[test]
     fn no_temperature_is_without_a_colour() {
         let table = Planckian::new(&Daylight::default());
-        let (cold, hot) = (table.at(0.0), table.at(f64::INFINITY));
+        let (cold, hot) = (table.at(f64::NEG_INFINITY), table.at(f64::INFINITY));
         assert_eq!(
-            (cold.log_luminance, hot.log_luminance),
+            (cold.log_luminance(), hot.log_luminance()),
             (f64::NEG_INFINITY, f64::INFINITY)
         );
         let white = black_body_color(6504.0);
@@ -152,12 +169,12 @@ mod tests {
         }
         let mut before = f64::NEG_INFINITY;
         for step in -3000..3000 {
-            let found = table.at(10f64.powf(0.1 * f64::from(step)));
+            let found = table.at(10f64.powf(0.1 * f64::from(step)).ln());
             assert!(
-                found.hue.is_finite() && found.log_luminance >= before,
+                found.hue.is_finite() && found.log_luminance() >= before,
                 "{step}"
             );
-            before = found.log_luminance;
+            before = found.log_luminance();
         }
     }
 }

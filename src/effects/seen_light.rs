@@ -5,11 +5,14 @@ use std::sync::OnceLock;
 use glam::DVec3;
 
 use super::color_table::ColorTable;
-use super::planckian::Planckian;
+use super::planckian::{Glow, Planckian};
 use super::{Daylight, Doppler, Spectrum, Temperature, luminance, ramp_color};
 
 /// Limits on the natural logarithm of a ratio of luminances: what is beyond them is beyond every screen.
 const LOGARITHMS: (f64, f64) = (-600.0, 600.0);
+
+/// So bright that brighter light is no other, and far below what `f64` ends with.
+const BRIGHTEST: f64 = 1e260;
 
 /// The light of surfaces as an observer sees it, with the effects that are asked for and no others.
 ///
@@ -18,7 +21,7 @@ const LOGARITHMS: (f64, f64) = (-600.0, 600.0);
 /// together are the whole shifted spectrum. The ratio is that which the eye sees, not the fourth power of the Doppler
 /// factor: of daylight seen at 2 it is 8.4.
 ///
-/// Tables are made where a colour first needs them: tens of milliseconds.
+/// Tables are made where a colour first needs them, in about a tenth of a second.
 ///
 /// # Accuracy
 ///
@@ -92,8 +95,13 @@ impl SeenLight {
         if !self.is_shifted() && lamp.kelvin == self.daylight().kelvin {
             return color;
         }
+        let log_factor = doppler_factor.ln();
         if self.doppler == Doppler::Ramp {
-            return ramp_color(doppler_factor) * self.brighter(lamp, doppler_factor);
+            let brighter = match self.searchlight {
+                true => self.brighter(lamp, &self.glow_of(lamp, log_factor)),
+                false => 1.0,
+            };
+            return ramp_color(doppler_factor) * brighter;
         }
         // Reflectances are those of colours up to white; brighter ones are so many times as bright.
         let color = color.max(DVec3::ZERO);
@@ -101,12 +109,19 @@ impl SeenLight {
         let color = color / times;
         let at_rest = match lamp.kelvin == self.daylight().kelvin {
             true => color,
-            false => self.light(color, lamp.kelvin, 1.0),
+            false => {
+                let still = Lamplight {
+                    factor: 1.0,
+                    ..lamp
+                };
+                self.light(color, lamp.kelvin, 0.0, &self.glow_of(still, 0.0))
+            }
         };
         if !self.is_shifted() {
             return at_rest * times;
         }
-        let shifted = self.light(color, lamp.kelvin * lamp.factor, doppler_factor);
+        let glow = self.glow_of(lamp, log_factor);
+        let shifted = self.light(color, lamp.kelvin * lamp.factor, log_factor, &glow);
         let [rest_luminance, seen_luminance] = [at_rest, shifted].map(luminance);
         let light = match (self.doppler, self.searchlight) {
             (Doppler::None, _) if !(rest_luminance > 0.0) => DVec3::ZERO,
@@ -115,7 +130,7 @@ impl SeenLight {
             (_, false) if !(seen_luminance > 0.0) => DVec3::ZERO,
             (_, false) => shifted * (rest_luminance / seen_luminance),
         };
-        light * (times * self.brighter(lamp, doppler_factor))
+        light * (times * self.brighter(lamp, &glow))
     }
 
     /// The light of a black body of this temperature and luminance at rest.
@@ -124,31 +139,40 @@ impl SeenLight {
             kelvin: temperature.kelvin(),
             factor: 1.0,
         };
+        let glow = self.glow_of(lamp, doppler_factor.ln());
         let hue = match self.doppler {
-            Doppler::None => self.black_bodies().at(lamp.kelvin).hue,
-            Doppler::Spectrum(_) => self.black_bodies().at(lamp.kelvin * doppler_factor).hue,
+            Doppler::None => self.black_bodies().at(lamp.kelvin.ln()).hue,
+            Doppler::Spectrum(_) => glow.hue,
             Doppler::Ramp => ramp_color(doppler_factor),
         };
-        hue * (luminance * self.brighter(lamp, doppler_factor))
+        hue * (luminance * self.brighter(lamp, &glow)).min(BRIGHTEST)
+    }
+
+    /// The light of a lamp, as it is seen of a white surface whose Doppler factor has this natural logarithm.
+    fn glow_of(&self, lamp: Lamplight, log_factor: f64) -> Glow {
+        let log_kelvin = (lamp.kelvin * lamp.factor).ln();
+        self.black_bodies().at(log_kelvin + log_factor)
     }
 
     /// Over the luminance of a white surface in this light.
-    fn light(&self, color: DVec3, kelvin: f64, doppler_factor: f64) -> DVec3 {
-        let black_bodies = self.black_bodies();
-        let hue = black_bodies.at(kelvin * doppler_factor).hue;
+    fn light(&self, color: DVec3, kelvin: f64, log_factor: f64, glow: &Glow) -> DVec3 {
         let colors = self
             .colors
             .get_or_init(|| ColorTable::new(Daylight::of(self.spectrum)));
-        colors.light(black_bodies, color, kelvin, doppler_factor, hue)
+        colors.light(self.black_bodies(), color, kelvin, log_factor, glow.hue)
     }
 
-    /// The luminance of a white surface over that at rest, where it is to be seen.
-    fn brighter(&self, lamp: Lamplight, doppler_factor: f64) -> f64 {
+    /// The luminance of a white surface, whose light is `glow`, over that at rest, where it is to be seen.
+    fn brighter(&self, lamp: Lamplight, glow: &Glow) -> f64 {
         if !self.searchlight {
             return 1.0;
         }
-        let at = |kelvin| self.black_bodies().at(kelvin).log_luminance;
-        let ratio = at(lamp.kelvin * lamp.factor * doppler_factor) - at(lamp.kelvin);
+        // That of daylight is 1.
+        let at_rest = match lamp.kelvin == self.daylight().kelvin {
+            true => 0.0,
+            false => self.black_bodies().at(lamp.kelvin.ln()).log_luminance(),
+        };
+        let ratio = glow.log_luminance() - at_rest;
         ratio.clamp(LOGARITHMS.0, LOGARITHMS.1).exp()
     }
 
@@ -355,13 +379,6 @@ mod tests {
         }
         let total: usize = counts.iter().sum();
         let beyond = |limit: usize| counts[limit + 1..].iter().sum::<usize>() as f64 / total as f64;
-        eprintln!(
-            "{} {} {} {} {worst:?}",
-            beyond(1),
-            beyond(2),
-            beyond(4),
-            beyond(8)
-        );
         assert!(beyond(2) < 0.06 && beyond(8) < 0.03, "{worst:?}");
     }
 }

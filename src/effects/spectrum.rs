@@ -244,7 +244,7 @@ impl Reflectance {
 }
 
 /// Where a wavelength is between those that colours speak of: from -1 to 1.
-fn place(wavelength: f64) -> f64 {
+pub(super) fn place(wavelength: f64) -> f64 {
     let (shortest, longest) = KNOWN;
     let middle = 0.5 * (shortest + longest);
     (wavelength.clamp(shortest, longest) - middle) / (longest - middle)

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::clock::Clock;
 use super::files::{check_outputs, file_for_each_step, with_suffix};
+use super::vertex_colors::{ColorNote, VertexColors};
 use super::work::Work;
 use super::{ExportError, ExportSettings, Fitted, Progress, Tally};
 use crate::pipeline::{PlacedScene, SurfaceOptions};
@@ -23,6 +24,8 @@ pub struct Exported {
     /// The time that each stage took, and the facts about every photosurface if [`ExportSettings::keep_facts`] is set
     /// or a report is written.
     pub report: Report,
+    /// What colours of vertices do not show as pictures do.
+    pub notes: Vec<ColorNote>,
 }
 
 /// Writes the photosurfaces of a placed scene to `path`, in the format of its extension (.glb, .gltf or .ply), with the
@@ -255,6 +258,7 @@ impl FittedExport {
         };
         Ok(Exported {
             files: files.clone(),
+            notes: work.notes(),
             data_files: work.data_files,
             tally: work.tally,
             report,
@@ -279,6 +283,7 @@ impl FittedExport {
             files: vec![],
             data_files: vec![],
             report: work.take_report(),
+            notes: work.notes(),
             tally: work.tally,
         })
     }
@@ -296,6 +301,7 @@ impl FittedExport {
             format: level.format,
             playback: level.settings.playback,
             progress,
+            colors: VertexColors::new(placed, &level.settings.textures),
             clock: self.clock.resumed(),
             tally: Tally::default(),
             facts: (level.settings.keep_facts || has_report).then(Vec::new),

@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use super::vertex_colors::VertexColors;
 use super::{DEFAULT_MAX_TRIANGLES, OutputError};
 use crate::pipeline::PlacedScene;
+use crate::render::Textures;
 use crate::scene::Tolerance;
 use crate::write::{FRAMES_PER_SECOND, Format, Playback, StageTime, WriteError};
 
@@ -33,6 +35,8 @@ pub struct ExportSettings {
     pub keep_facts: bool,
     /// Stages that the caller has finished before the export, with their times, for the report.
     pub stages_before: Vec<StageTime>,
+    /// The textures whose colours become those of vertices if the scene calls for the Doppler effect.
+    pub textures: Textures,
 }
 
 impl Default for ExportSettings {
@@ -47,6 +51,7 @@ impl Default for ExportSettings {
             report: None,
             keep_facts: true,
             stages_before: vec![],
+            textures: Textures::default(),
         }
     }
 }
@@ -72,6 +77,12 @@ pub enum ExportError {
         "an animation by morphing shows one mesh, and attributes differ from step to step; expected no attributes"
     )]
     MorphingAttributes,
+    /// Colours of vertices, which differ from step to step, are called for together with one mesh for all steps.
+    #[error(
+        "an animation by morphing shows one mesh, and colours as the observer sees them differ from step to step; expected \
+         no Doppler effect and no black bodies"
+    )]
+    MorphingColors,
     /// An animation is asked for together with a file for each step.
     #[error("an animation is one file, expected it without a file for each step")]
     SplitPlayback,
@@ -127,6 +138,10 @@ impl ExportSettings {
             && !placed.scene().attributes().is_empty()
         {
             Err(ExportError::MorphingAttributes)
+        } else if matches!(playback, Playback::Morph { .. })
+            && VertexColors::are_wanted(placed.scene())
+        {
+            Err(ExportError::MorphingColors)
         } else {
             Ok(())
         }

@@ -179,7 +179,7 @@ pub(super) fn label(picture: &mut Picture, text: &str, background: Color) {
 }
 
 /// Height of letters on a picture, in pixels.
-fn letters(picture: &Picture) -> f64 {
+pub(super) fn letters(picture: &Picture) -> f64 {
     (f64::from(picture.size().height()) * LETTERS).max(8.0)
 }
 

@@ -7,6 +7,7 @@ mod clock;
 mod diagram;
 #[cfg(feature = "plot")]
 mod diagram_plot;
+mod effect_costs;
 mod export;
 mod export_settings;
 mod exposure;
@@ -15,6 +16,7 @@ mod files;
 mod framing;
 mod guides;
 mod input;
+mod legend;
 mod load;
 mod picture_settings;
 mod pictures;
@@ -23,6 +25,7 @@ mod rendered;
 mod sheet;
 mod side_by_side;
 mod tally;
+mod vertex_colors;
 mod views;
 mod work;
 
@@ -34,6 +37,7 @@ pub use diagram::{
     DiagramError, DiagramMoment, DiagramPoint, DiagramSettings, DiagramTick, Emission, PointLine,
     WorldlineDiagram,
 };
+pub use effect_costs::EffectCost;
 pub use export::{
     ExportLevel, Exported, FittedExport, export, export_levels, levels_of_detail, write_report,
 };
@@ -51,3 +55,4 @@ pub use progress::{Cancelled, Progress};
 pub use rendered::{EmptyView, RenderError, Rendered, ViewCost};
 pub use side_by_side::{Column, render_side_by_side, side_by_side_size};
 pub use tally::Tally;
+pub use vertex_colors::ColorNote;

@@ -10,9 +10,11 @@ use super::exposure::found_exposure;
 use super::extent::{middle_of_sky, outermost};
 use super::framing::{OutsideCamera, seen_vertices};
 use super::guides::Ghost;
+use super::legend::draw_ramp_legend;
 use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
 use super::progress::Progress;
 use super::rendered::{EmptyView, RenderError, Rendered, ViewCost};
+use crate::effects::Doppler;
 use crate::mesh::Mesh;
 use crate::pipeline::{PlacedScene, PlacedSceneError, SurfaceOptions};
 use crate::render::{
@@ -99,6 +101,13 @@ impl<'a> Views<'a> {
         }
         self.effects = Some(effects);
         Ok(())
+    }
+
+    /// Draws what explains the colours of a view, if they need it.
+    fn draw_legend(&self, picture: &mut Picture) {
+        if self.placed.scene().effects().doppler == Doppler::Ramp {
+            draw_ramp_legend(picture);
+        }
     }
 
     /// Nothing yet, with the effects that the scene calls for.
@@ -189,10 +198,12 @@ impl<'a> Views<'a> {
         self.at_rest = Some(scenery).filter(|_| self.by_rays);
         self.rendered.costs.push(cost);
         let background = self.settings.background.0;
-        if picture.bytes().chunks(3).all(|pixel| pixel == background) {
+        let is_empty = picture.bytes().chunks(3).all(|pixel| pixel == background);
+        if is_empty {
             let look = middle_of_sky(&places);
             self.rendered.empty.push(EmptyView { step, look });
         }
+        self.draw_legend(&mut picture);
         Ok(picture)
     }
 
@@ -222,6 +233,7 @@ impl<'a> Views<'a> {
         settings
             .guides
             .draw(&mut picture, outside, &scenery, &edges, background);
+        self.draw_legend(&mut picture);
         Ok(picture)
     }
 

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 
 use super::ahead::in_order;
 use super::clock::Clock;
+use super::vertex_colors::{ColorNote, VertexColors};
 use super::{Cancelled, Progress, Tally};
-use crate::pipeline::{Facts, PlacedScene, SurfaceOptions};
+use crate::pipeline::{Facts, Photosurface, PlacedScene, SurfaceOptions};
 use crate::write::{
     Export, Format, GltfFile, GltfOutput, Playback, Report, Target, WriteError, write_ply,
     write_whole, write_whole_gltf, write_whole_target,
@@ -20,6 +21,8 @@ pub(super) struct Work<'a> {
     pub(super) format: Format,
     pub(super) playback: Option<Playback>,
     pub(super) progress: &'a dyn Progress,
+    /// What colours vertices, if the scene calls for it.
+    pub(super) colors: Option<VertexColors<'a>>,
     pub(super) clock: Clock,
     pub(super) tally: Tally,
     /// The facts about every photosurface, if they are to be kept.
@@ -45,10 +48,28 @@ impl Work<'_> {
         told.map_err(|Cancelled| WriteError::Cancelled)
     }
 
+    /// What is wanted of photosurfaces in the making: colours need more than files have.
+    fn needed(&self) -> SurfaceOptions {
+        match self.colors {
+            Some(_) => VertexColors::needed(self.wanted),
+            None => self.wanted,
+        }
+    }
+
+    /// A photosurface as it is in files, with its colours if the scene calls for them.
+    fn finished(&mut self, photosurface: Photosurface) -> Photosurface {
+        let Some(colors) = &mut self.colors else {
+            return photosurface;
+        };
+        let photosurface = colors.colored(photosurface, self.wanted.attributes);
+        self.clock.stop("doppler");
+        photosurface
+    }
+
     /// Makes the photosurfaces of some steps and writes each to the file at once, so that memory does not grow with
     /// their number.
     fn fill(&mut self, file: &mut GltfFile<'_>, steps: Range<usize>) -> Result<(), WriteError> {
-        let (placed, wanted) = (self.placed, self.wanted);
+        let (placed, wanted) = (self.placed, self.needed());
         if self.is_morphing() {
             for part in placed.morphing(wanted) {
                 part.iter().try_for_each(|step| self.count(&step.facts))?;
@@ -61,6 +82,7 @@ impl Work<'_> {
         in_order(placed, wanted, steps, |photosurface| {
             self.count(&photosurface.facts)?;
             self.clock.stop("photosurface");
+            let photosurface = self.finished(photosurface);
             file.add(&photosurface)?;
             self.clock.stop("write");
             Ok(())
@@ -86,7 +108,7 @@ impl Work<'_> {
 
     /// Writes a PLY after all its photosurfaces are made, because the format starts with the number of vertices.
     fn ply(&mut self, steps: Range<usize>, out: &mut dyn Write) -> Result<(), WriteError> {
-        let (placed, wanted) = (self.placed, self.wanted);
+        let (placed, wanted) = (self.placed, self.needed());
         let mut photosurfaces = vec![];
         for step in steps {
             for photosurface in placed.photosurfaces(step, wanted)? {
@@ -95,6 +117,8 @@ impl Work<'_> {
             }
         }
         self.clock.stop("photosurface");
+        let photosurfaces = photosurfaces.into_iter();
+        let photosurfaces: Vec<_> = photosurfaces.map(|made| self.finished(made)).collect();
         let export = Export {
             scene: &placed.facts(),
             marker: placed.marker(),
@@ -143,6 +167,12 @@ impl Work<'_> {
             Format::Ply => self.ply(steps, out),
             Format::Glb | Format::Gltf => self.glb(steps, Target::Stream(out)),
         }
+    }
+
+    /// What is to be said of the colours of vertices.
+    pub(super) fn notes(&self) -> Vec<ColorNote> {
+        let colors = self.colors.as_ref();
+        colors.map_or(vec![], |colors| colors.notes().to_vec())
     }
 
     /// The report of everything made, with the times of the stages. The facts go into it.

@@ -158,6 +158,21 @@ impl Material {
         names_of_extensions(&self.properties).any(|name| name == "KHR_materials_unlit")
     }
 
+    /// The same with white in place of the base colour and its texture: for a mesh whose vertices have all of it.
+    pub(crate) fn without_base_color(&self) -> Self {
+        let mut properties = self.properties.clone();
+        if let Some(base) = properties
+            .get_mut("pbrMetallicRoughness")
+            .and_then(Value::as_object_mut)
+        {
+            base.remove("baseColorTexture");
+            base.remove("baseColorFactor");
+        }
+        Self::new(properties, self.textures.clone())
+            .expect("less of what has been checked")
+            .requiring(self.required.iter().map(String::as_str))
+    }
+
     /// The same without the textures that a mesh of so many texture coordinate sets cannot place, and the
     /// names of their slots.
     pub(crate) fn placed_by(&self, sets: usize) -> (Self, Vec<String>) {
@@ -265,6 +280,26 @@ mod tests {
             let error = Material::new(properties, vec![texture()]).unwrap_err();
             assert_eq!(error.to_string(), message);
         }
+    }
+
+    #[test]
+    fn vertices_may_have_all_of_the_base_colour() {
+        let properties = json!({
+            "pbrMetallicRoughness": {
+                "baseColorFactor": [0.1, 0.2, 0.3, 0.4], "baseColorTexture": {"index": 1}, "metallicFactor": 0.25,
+            },
+            "normalTexture": {"index": 0},
+            "alphaMode": "MASK",
+        });
+        let material = Material::new(properties, vec![texture(), texture()]).unwrap();
+        let plain = material.without_base_color();
+        assert_eq!(plain.base_color(), [1.0; 4]);
+        assert!(plain.base_color_texture().is_none());
+        assert_eq!(plain.textures().len(), 1);
+        let expected = json!({
+            "pbrMetallicRoughness": {"metallicFactor": 0.25}, "normalTexture": {"index": 0}, "alphaMode": "MASK",
+        });
+        assert_eq!(plain.properties(), &expected);
     }
 
     #[test]

@@ -30,6 +30,9 @@ pub struct Facts {
     /// The `extras` of the part in the source, unchanged.
     #[serde(skip_serializing_if = "Option::is_none", serialize_with = "as_it_is")]
     pub source: Option<Arc<Value>>,
+    /// The light of the object if it is a black body, as scenes write it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub emission: Option<Value>,
     /// The step, counted from 0.
     pub step: usize,
     /// Proper time of the observer at this step, counted from the observation event, in scene units.
@@ -91,6 +94,9 @@ pub struct SceneFacts {
     /// How the flight is computed, as scenes write it; "exact" if absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub observer_integrator: Option<Value>,
+    /// The effects that the scene calls for beside shapes, as scenes write them; none if absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub effects: Option<Value>,
     /// Proper times of the observer at the steps, counted from the observation event, in scene units.
     pub steps: Vec<f64>,
     /// For each source that has a copyright or `extras` of its own: the names of the `objects` that use it, its
@@ -151,6 +157,10 @@ impl SceneFacts {
                 Integrator::Euler(step) => Some(json!({ "euler": step.get() })),
                 Integrator::RungeKutta4(step) => Some(json!({ "rk4": step.get() })),
             },
+            effects: scene
+                .effects()
+                .is_some()
+                .then(|| scene.effects().to_value()),
             steps: scene.steps().to_vec(),
             sources: sources(scene, origins),
         }

@@ -14,7 +14,7 @@ use super::vertex_data::VertexData;
 use super::{MomentFacts, Photosurface, PlacedSceneError, SurfaceOptions};
 use crate::light_cone::{ModelView, View};
 use crate::material::{Model, Part};
-use crate::scene::{Attribute, MarkerRadius, Object, Scene, Source, Tolerance};
+use crate::scene::{Attribute, Emission, MarkerRadius, Object, Scene, Source, Tolerance};
 use crate::shape::{Appearance, Color, Shape};
 use crate::spacetime::{MAX_RAPIDITY, Velocity, ViewModel};
 
@@ -338,6 +338,7 @@ impl PlacedScene {
             model: Some(shown.model()).filter(|&model| model != ViewModel::Seen),
             part: surface.part.name.clone(),
             source: surface.part.extras.clone(),
+            emission: object.emission.map(Emission::to_value),
             step,
             proper_time: steps[step],
             observer: (!self.scene.observer().flight.is_empty())

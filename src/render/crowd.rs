@@ -337,6 +337,8 @@ impl Path {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use serde_json::json;
 
     use super::super::tree::counted;
@@ -494,24 +496,34 @@ mod tests {
             let scenery = scenery(&scene);
             let moment = scene.moment(0).unwrap();
             let crowd = Crowd::new(scenery.bodies.iter(), Viewpoint::Observer(&moment));
-            // Rings of equal solid angle at rest around the direction of motion, each with places of its own: where the ball
-            // is seen small there are as many. Solid angles go as the inverse square of the factor.
-            let rings = 1500;
-            let mut sum = 0.0;
-            for (ring, step) in (0..rings).flat_map(|ring| (0..rings).map(move |step| (ring, step)))
-            {
-                let at_rest = (2.0 * f64::from(ring) + 1.0) / f64::from(rings) - 1.0;
-                let along = (at_rest + 0.9) / (1.0 + 0.9 * at_rest);
-                let angle = std::f64::consts::TAU
-                    * (f64::from(step) / f64::from(rings) + 0.618 * f64::from(ring));
-                let across = (1.0 - along * along).sqrt();
-                let ahead = f64::from(direction[0]);
-                let seen = DVec3::new(ahead * along, across * angle.cos(), across * angle.sin());
-                if let Some(hit) = crowd.nearest(seen, 0.0, f64::MAX, false) {
-                    sum += hit.doppler.powi(2);
-                }
-            }
-            let found = sum * 2.0 * std::f64::consts::TAU / f64::from(rings * rings);
+            // Rings of equal solid angle around an axis, each with places of its own, first over the whole sky, then around
+            // the ball.
+            let places = |axis: DVec3, rings: u32, least: f64| {
+                let (u, v) = axis.any_orthonormal_pair();
+                let numbers =
+                    (0..rings).flat_map(move |ring| (0..rings).map(move |step| (ring, step)));
+                numbers.map(move |(ring, step)| {
+                    let [ring, step, rings] = [ring, step, rings].map(f64::from);
+                    let along = least + (1.0 - least) * (ring + 0.5) / rings;
+                    let angle = TAU * (step / rings + 0.618 * ring);
+                    let across = (1.0 - along * along).sqrt();
+                    axis * along + (u * angle.cos() + v * angle.sin()) * across
+                })
+            };
+            let hit = |seen| crowd.nearest(seen, 0.0, f64::MAX, false);
+            let coarse: Vec<DVec3> = places(DVec3::X, 300, -1.0)
+                .filter(|&seen| hit(seen).is_some())
+                .collect();
+            let axis = coarse.iter().sum::<DVec3>().normalize();
+            let farthest = coarse
+                .iter()
+                .map(|seen| seen.angle_between(axis))
+                .fold(0.0, f64::max);
+            let least = (1.2 * farthest).cos();
+            let rings = 800;
+            let seen = places(axis, rings, least).filter_map(hit);
+            let sum: f64 = seen.map(|hit| hit.doppler.powi(4)).sum();
+            let found = sum * TAU * (1.0 - least) / f64::from(rings * rings);
             assert!((found / density - 1.0).abs() < 1e-3, "{found} {density}");
         }
     }

@@ -35,6 +35,7 @@ pub use camera::{Camera, CameraError, MAX_PICTURE_SIDE, PictureSize, Projection}
 #[cfg(feature = "plot")]
 pub(crate) use lettering::FONT;
 pub use lettering::lettering_width;
+pub(crate) use paint::Paint;
 pub use picture::Picture;
 pub use picture_effects::PictureEffects;
 pub(crate) use scenery::grid_places;

@@ -8,9 +8,10 @@ use super::Textures;
 use super::shading::Finish;
 use super::texture::{BytesMean, Pixels};
 use crate::material::{AlphaMode, Material, Slot};
+use crate::mesh::Mesh;
 
 /// A material, ready to be looked at.
-pub(super) struct Paint {
+pub(crate) struct Paint {
     base_color: Vec4,
     emission: Vec3,
     finish: Finish,
@@ -81,7 +82,7 @@ impl Paint {
     }
 
     /// The paint of `object`'s material; without those of its textures that cannot be decoded.
-    pub(super) fn new(material: Option<&Arc<Material>>, object: &str, textures: &Textures) -> Self {
+    pub(crate) fn new(material: Option<&Arc<Material>>, object: &str, textures: &Textures) -> Self {
         let Some(material) = material else {
             return Self::plain();
         };
@@ -185,6 +186,21 @@ impl Paint {
             AlphaMode::Opaque => 1.0,
             AlphaMode::Mask(least) => f32::from(f64::from(alpha) >= least),
             AlphaMode::Blend => alpha.clamp(0.0, 1.0),
+        }
+    }
+
+    /// Linear base colour and opacity at a vertex of a mesh: opaque where the material says that opacity means nothing.
+    pub(crate) fn at_vertex(&self, mesh: &Mesh, vertex: usize) -> Vec4 {
+        let mut places = TexturePlaces::default();
+        for (place, &set) in places.iter_mut().zip(self.texture_sets()) {
+            let set = mesh.texture_coordinates().get(set);
+            *place = set.map_or(DVec2::ZERO, |set| set[vertex].as_dvec2());
+        }
+        let own = mesh.colors().map_or(Vec4::ONE, |colors| colors[vertex]);
+        let color = self.color(&places, own);
+        match self.alpha_mode {
+            AlphaMode::Opaque => color.with_w(1.0),
+            AlphaMode::Mask(_) | AlphaMode::Blend => color,
         }
     }
 }

@@ -68,6 +68,11 @@ pub const BUILT_IN_SCENES: &[BuiltInScene] = &[
         summary: "a sphere and a cube at 0.9 c; try --models seen,delayed,contracted,rest --sheet",
         json: include_str!("../../examples/scenes/models.json"),
     },
+    BuiltInScene {
+        name: "stars",
+        summary: "a sky of stars at 0.9 c: black bodies, shifted and crowded ahead; try --full-sky",
+        json: include_str!("../../examples/scenes/stars.json"),
+    },
 ];
 
 impl BuiltInScene {

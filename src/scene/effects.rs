@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
+use serde_json::{Value, json};
 use thiserror::Error;
 
 use super::emission::kelvin;
@@ -65,6 +66,35 @@ impl Effects {
     /// Whether there are any.
     pub fn is_some(&self) -> bool {
         *self != Self::default()
+    }
+
+    /// As scenes write them.
+    pub(crate) fn to_value(self) -> Value {
+        let edge = |beyond| match beyond {
+            Beyond::Edge => "edge",
+            Beyond::Dark => "dark",
+        };
+        let mut effects = json!({});
+        match self.doppler {
+            Doppler::None => {}
+            Doppler::Ramp => effects["doppler"] = "ramp".into(),
+            Doppler::Spectrum(spectrum) => {
+                effects["doppler"] = json!({
+                    "kelvin": spectrum.daylight.kelvin(),
+                    "infrared": edge(spectrum.infrared),
+                    "ultraviolet": edge(spectrum.ultraviolet),
+                });
+            }
+        }
+        if self.searchlight {
+            effects["searchlight"] = true.into();
+        }
+        match self.exposure {
+            Exposure::Auto => effects["exposure"] = "auto".into(),
+            Exposure::Stops(Stops(0.0)) => {}
+            Exposure::Stops(Stops(stops)) => effects["exposure"] = stops.into(),
+        }
+        effects
     }
 }
 
@@ -299,6 +329,9 @@ mod tests {
             (ramp.doppler, ramp.exposure),
             (Doppler::Ramp, Exposure::Auto)
         );
+        for written in [both, ramp] {
+            assert_eq!(effects(&written.to_value().to_string()), written);
+        }
         let dark = effects(r#"{ "doppler": { "kelvin": 3000, "infrared": "dark" } }"#);
         let expected = Spectrum {
             daylight: Temperature::new(3000.0).unwrap(),

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
+use serde_json::{Value, json};
 use thiserror::Error;
 
 use super::forms::Keyed;
@@ -50,6 +51,11 @@ impl Emission {
     /// The temperature.
     pub fn temperature(&self) -> Temperature {
         self.kelvin
+    }
+
+    /// As scenes write it.
+    pub(crate) fn to_value(self) -> Value {
+        json!({ "kelvin": self.kelvin.kelvin(), "luminance": self.luminance })
     }
 
     /// The luminance at rest.

@@ -59,5 +59,7 @@ KINDS = {
     "materials of an OBJ": mesh(write_obj),
     "materials of an OBJ beside a buffer of its own": mesh(write_obj, to="out.gltf"),
     "attributes": scene(PASSING, "--attributes", "doppler,emission_time,rest_position,radiance"),
+    "Doppler colours": scene(SEVERAL, "--doppler", "spectrum"),
+    "Doppler colours of textures": mesh(write_hierarchy, "--doppler", "spectrum"),
     **PLAYING,
 }

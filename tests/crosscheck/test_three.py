@@ -99,6 +99,8 @@ def test_materials(read):
         surface = written.get("pbrMetallicRoughness", {})
         assert found["name"] == written.get("name", "")
         assert [*found["color"], found["opacity"]] == surface.get("baseColorFactor", [1, 1, 1, 1])
+        # What is multiplied by the colours of the vertices: white, where they are all that is to be seen.
+        assert found["vertexColors"] == ("COLOR_0" in node.attributes)
         assert found["emissive"] == written.get("emissiveFactor", [0, 0, 0])
         assert found["metalness"] == surface.get("metallicFactor", 1)
         assert found["roughness"] == surface.get("roughnessFactor", 1)

@@ -48,6 +48,7 @@ async function main([file, ...times]) {
     alphaTest: it.alphaTest,
     metalness: it.metalness,
     roughness: it.roughness,
+    vertexColors: it.vertexColors,
     doubleSided: it.side === THREE.DoubleSide,
     map: texture(it.map),
     normalMap: texture(it.normalMap),

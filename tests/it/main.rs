@@ -27,6 +27,7 @@ mod physics {
 
 mod effects {
     mod colours;
+    mod exports;
     mod lamps;
     mod models;
     mod pictures;

@@ -146,7 +146,11 @@ def test_materials_are_those_of_the_file(paths):
             surface.get("roughnessFactor", 1), rel=2**-24
         )
         texture = surface.get("baseColorTexture")
-        if texture is None:
+        if "COLOR_0" in node.attributes:
+            # The base colour comes from there: `test_colours_of_vertices_are_what_the_material_shows`.
+            assert image is None and texture is None
+            assert surface.get("baseColorFactor", [1, 1, 1, 1]) == [1, 1, 1, 1]
+        elif texture is None:
             assert image is None
             written = surface.get("baseColorFactor", [1, 1, 1, 1])
             *colour, _ = shader.inputs["Base Color"].default_value
@@ -338,3 +342,28 @@ def test_attributes_of_their_own_arrive(tmp_path):
     for step, node in enumerate(glb.Gltf(path).nodes):
         assert node.attributes["_HEAT"].tolist() == handmade.heat(step).tolist()
         assert_attributes_arrive(node, objects[node.name])
+
+
+def test_colours_of_vertices_are_what_the_material_shows(export, tmp_path):
+    """Nobody has to choose them: the base colour of the shader comes from the colours of the mesh."""
+    for kind in ("Doppler colours", "Doppler colours of textures"):
+        for path in KINDS[kind](export, tmp_path):
+            colored = 0
+            for _, node, found in each_mesh([path]):
+                shader, image = blender.surface(found)
+                links = shader.inputs["Base Color"].links
+                written = node.attributes.get("COLOR_0")
+                if written is None:
+                    assert not links
+                    continue
+                colored += 1
+                assert image is None
+                assert [link.from_node.type for link in links] == ["VERTEX_COLOR"]
+                (colors,) = found.data.color_attributes
+                assert links[0].from_node.layer_name in ("", colors.name)
+                values = blender.values(colors.data, "color", 4)
+                if colors.domain == "CORNER":
+                    written = written[[loop.vertex_index for loop in found.data.loops]]
+                # As bytes at worst, those of sRGB, which are coarser where it is bright.
+                assert abs(values - written / 255).max() < 0.01
+            assert colored > 0

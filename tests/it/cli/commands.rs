@@ -31,7 +31,7 @@ fn every_built_in_scene_exports() {
         .filter_map(|line| line.split_whitespace().next())
         .collect();
     let expected =
-        "sphere, cube, lattice, street, night, snapshot, flight, takeoff, turn, orbit, models";
+        "sphere, cube, lattice, street, night, snapshot, flight, takeoff, turn, orbit, models, stars";
     assert_eq!(names.join(", "), expected);
     for name in names {
         workplace

@@ -1,0 +1,118 @@
+//! What effects cost, measured on a small sample.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use glam::DVec3;
+
+use crate::effects::{Doppler, SeenLight, tone, within_gamut};
+use crate::scene::{Exposure, Scene};
+
+/// Lights that are worked out for one measurement: some milliseconds.
+const SAMPLE: u32 = 20_000;
+
+/// What an effect of a scene costs on this computer, now: an estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EffectCost {
+    /// Its name in scenes.
+    pub effect: &'static str,
+    /// Wall-clock time before the first colour, in seconds.
+    pub start_seconds: f64,
+    /// Wall-clock time for each colour of a vertex or ray, in seconds, with all threads at work.
+    pub seconds_each: f64,
+}
+
+impl EffectCost {
+    /// The effects that a scene calls for, each measured by itself; none if it calls for none.
+    pub fn of_scene(scene: &Scene) -> Vec<Self> {
+        let effects = scene.effects();
+        let mut costs = Vec::new();
+        if effects.doppler != Doppler::None {
+            let light = SeenLight::new(effects.doppler, false);
+            let color = |color, factor| light.seen(color, light.daylight(), factor);
+            costs.push(Self::measured("doppler", color));
+        }
+        if effects.searchlight {
+            let light = SeenLight::new(Doppler::None, true);
+            let color = |color, factor| light.seen(color, light.daylight(), factor);
+            costs.push(Self::measured("searchlight", color));
+        }
+        let mut emissions = scene.objects().iter().filter_map(|object| object.emission);
+        if let Some(emission) = emissions.next() {
+            let light = SeenLight::new(effects.doppler, effects.searchlight);
+            let (temperature, luminance) = (emission.temperature(), emission.luminance());
+            let color = |_, factor| light.glow(temperature, luminance, factor);
+            costs.push(Self::measured("emission", color));
+        }
+        if effects.exposure != Exposure::default() {
+            let factor = match effects.exposure {
+                Exposure::Stops(stops) => stops.factor(),
+                Exposure::Auto => 1.0,
+            };
+            costs.push(Self::measured("exposure", |color, _| {
+                tone(within_gamut(color * factor))
+            }));
+        }
+        costs
+    }
+
+    /// Wall-clock time for so many vertices or rays, in seconds.
+    pub fn seconds(&self, count: f64) -> f64 {
+        self.start_seconds + self.seconds_each * count
+    }
+
+    fn measured(effect: &'static str, color: impl Fn(DVec3, f64) -> DVec3) -> Self {
+        let start = Instant::now();
+        black_box(color(DVec3::new(0.1, 0.5, 0.9), 1.3));
+        let start_seconds = start.elapsed().as_secs_f64();
+        // Of which the making of the sample is no part.
+        let seconds = (sampled(color) - sampled(|color, _| color)).max(0.0);
+        let threads = rayon::current_num_threads() as f64;
+        Self {
+            effect,
+            start_seconds,
+            seconds_each: seconds / f64::from(SAMPLE) / threads,
+        }
+    }
+}
+
+/// Wall-clock time of one thread for the whole sample, in seconds.
+fn sampled(color: impl Fn(DVec3, f64) -> DVec3) -> f64 {
+    let start = Instant::now();
+    for number in 0..SAMPLE {
+        let part = |by: f64| (f64::from(number) * by).fract();
+        let surface = DVec3::new(part(0.618), part(0.414), part(0.732));
+        black_box(color(surface, 0.5 + 1.5 * part(0.236)));
+    }
+    start.elapsed().as_secs_f64()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_a_scene_calls_for_has_a_cost() {
+        let costs = |effects: &str, emission: &str| {
+            let scene = format!(
+                r#"{{ "effects": {effects}, "objects": [{{ "name": "s", "shape": {{ "sphere": {{ "radius": 1 }} }} {emission} }}] }}"#
+            );
+            let costs = EffectCost::of_scene(&Scene::from_json(&scene).unwrap());
+            for cost in &costs {
+                assert!(
+                    cost.start_seconds >= 0.0 && cost.seconds_each >= 0.0,
+                    "{cost:?}"
+                );
+                assert!(cost.seconds(1e6) >= cost.seconds(1e3));
+            }
+            costs.iter().map(|cost| cost.effect).collect::<Vec<_>>()
+        };
+        assert!(costs("{}", "").is_empty());
+        let all = r#"{ "doppler": "ramp", "searchlight": true, "exposure": "auto" }"#;
+        assert_eq!(costs(all, ""), ["doppler", "searchlight", "exposure"]);
+        assert_eq!(
+            costs("{}", r#", "emission": { "kelvin": 3000 }"#),
+            ["emission"]
+        );
+    }
+}
