@@ -91,13 +91,13 @@ pub fn render_side_by_side<E: From<RenderError>>(
             let cameras = settings.camera.outside_cameras(from, &frames);
             let cameras = cameras.map_err(RenderError::from)?;
             let pictures = match together {
-                true => vec![0..steps],
-                false => (0..steps).map(|step| step..step + 1).collect(),
+                true => vec![(0, steps)],
+                false => (0..steps).map(|step| (step, step + 1)).collect(),
             };
-            for (number, steps) in pictures.into_iter().enumerate() {
+            for (number, (from, to)) in pictures.into_iter().enumerate() {
                 let mut grid = Grid::new(size, settings);
                 row.draw(&mut grid, 0, |views, column| {
-                    views.outside(steps.clone(), &cameras[column])
+                    views.outside(from..to, &cameras[column])
                 })?;
                 finished(number, &grid.picture)?;
             }
@@ -154,7 +154,7 @@ impl Row<'_> {
     ) -> Result<(), RenderError> {
         for (number, (views, column)) in self.views.iter_mut().zip(self.columns).enumerate() {
             let mut picture = draw(views, number)?;
-            if row % 2 == 0 {
+            if row.is_multiple_of(2) {
                 let is_sheet = matches!(self.settings.view, PictureView::Sheet { .. });
                 let text = match is_sheet && self.steps > 1 {
                     true => {

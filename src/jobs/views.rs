@@ -15,7 +15,6 @@ use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
 use super::progress::Progress;
 use super::rendered::{EmptyView, RenderError, Rendered, ViewCost};
 use crate::effects::Doppler;
-use crate::mesh::Mesh;
 use crate::pipeline::{PlacedScene, PlacedSceneError, SurfaceOptions};
 use crate::render::{
     Camera, Picture, PictureEffects, PictureOptions, Scenery, Strokes, Textures, Viewpoint,
@@ -183,7 +182,7 @@ impl<'a> Views<'a> {
         let camera = self.observer_camera(fov_deg, &places)?;
         let moment = self.moment(step)?;
         let viewpoint = Viewpoint::Observer(&moment);
-        let (ghosts, edges) = self.ghosts(step)?;
+        let ghosts = self.ghosts(step)?;
         let mut scenery = match self.at_rest.take() {
             Some(at_rest) => at_rest,
             None => {
@@ -192,7 +191,7 @@ impl<'a> Views<'a> {
                 scenery
             }
         };
-        scenery.set_ghosts(ghosts);
+        let edges = set_ghosts(&mut scenery, ghosts);
         let (mut picture, cost) = self.take(&scenery, &camera, viewpoint)?;
         scenery.draw(&mut picture, &camera, viewpoint, &edges);
         self.at_rest = Some(scenery).filter(|_| self.by_rays);
@@ -218,14 +217,12 @@ impl<'a> Views<'a> {
         if let Some(marker) = self.placed.marker() {
             scenery.add_in_view(marker);
         }
-        let (mut ghosts, mut edges) = (Vec::new(), Vec::new());
+        let mut ghosts = Vec::new();
         for step in steps {
             self.add_photosurfaces(&mut scenery, step)?;
-            let of_step = self.ghosts(step)?;
-            ghosts.extend(of_step.0);
-            edges.extend(of_step.1);
+            ghosts.extend(self.ghosts(step)?);
         }
-        scenery.set_ghosts(ghosts);
+        let edges = set_ghosts(&mut scenery, ghosts);
         let viewpoint = Viewpoint::Outside(outside.place);
         let (mut picture, cost) = self.take(&scenery, &outside.camera, viewpoint)?;
         self.rendered.costs.push(cost);
@@ -237,15 +234,10 @@ impl<'a> Views<'a> {
         Ok(picture)
     }
 
-    /// The ghosts of one step with their colours, and their edges.
-    fn ghosts(
-        &self,
-        step: usize,
-    ) -> Result<(Vec<(Mesh, Color)>, Vec<Strokes<DVec3>>), RenderError> {
+    /// The ghosts of one step.
+    fn ghosts(&self, step: usize) -> Result<Vec<Ghost>, RenderError> {
         let options = self.settings.surface_options;
-        let ghosts = self.settings.guides.ghosts(self.placed, step, options)?;
-        let colored = |(mesh, edges): Ghost| ((mesh, edges.color), edges);
-        Ok(ghosts.into_iter().map(colored).unzip())
+        Ok(self.settings.guides.ghosts(self.placed, step, options)?)
     }
 
     pub(super) fn steps(&self) -> Range<usize> {
@@ -319,6 +311,14 @@ impl<'a> Views<'a> {
         let rays = u64::from(width) * u64::from(height) * of_a_pixel;
         Ok((picture, ViewCost { rays, seconds }))
     }
+}
+
+/// Has a scenery show ghosts; returns their edges, which are drawn onto the picture.
+fn set_ghosts(scenery: &mut Scenery, ghosts: Vec<Ghost>) -> Vec<Strokes<DVec3>> {
+    let colored = |(mesh, edges): Ghost| ((mesh, edges.color), edges);
+    let (ghosts, edges): (Vec<_>, _) = ghosts.into_iter().map(colored).unzip();
+    scenery.set_ghosts(ghosts);
+    edges
 }
 
 /// Nothing yet, in the light of the scene's lamps.

@@ -87,8 +87,8 @@ fn files_have_models_side_by_side() {
             .run(&format!("export {model}.json -o alone.glb"))
             .success();
         let alone = nodes(&workplace.read("alone.glb"));
-        for step in 0..2 {
-            let (here, there) = (&nodes(&side)[4 * step + number], &alone[step]);
+        for (step, there) in alone.iter().enumerate() {
+            let here = &nodes(&side)[4 * step + number];
             let vector = |value: &Value| -> Vec<f64> {
                 let numbers = value
                     .as_array()

@@ -18,11 +18,14 @@ use crate::common::refining::{mix, random_weights};
 const OBSERVER: DVec3 = DVec3::new(1.5, -2.0, 3.0);
 const DIRECTION: DVec3 = DVec3::new(-0.6, 0.64, -0.48);
 
+/// The point of a true surface that is nearest to a place at rest.
+type Nearest = fn(DVec3) -> DVec3;
+
 struct Case {
     model: ViewModel,
     beta: f64,
     /// The point of the true surface that is nearest to a place on a facet at rest.
-    nearest: fn(DVec3) -> DVec3,
+    nearest: Nearest,
     placed: PlacedScene,
 }
 
@@ -31,7 +34,7 @@ fn sphere() -> Shape {
 }
 
 fn cases() -> Vec<Case> {
-    let shapes: [(Shape, fn(DVec3) -> DVec3); 3] = [
+    let shapes: [(Shape, Nearest); 3] = [
         (sphere(), DVec3::normalize),
         (Shape::cuboid([1.0, 2.0, 3.0]).unwrap(), |place| place),
         (Shape::lattice([1, 1, 2], 1.0, 0.1).unwrap(), |place| place),

@@ -187,7 +187,7 @@ fn scenes() -> Vec<(&'static str, Value, DVec3, f64)> {
                 { "name": "cube", "shape": { "box": { "size": [2, 2, 2] } }, "color": "#ff0000", "checker": "#0000ff",
                   "rotation": [0.1, 0.3, 0, 0.9486833], "position": [1, 0.2, -6], "model": "rest" },
                 { "name": "torus", "shape": { "torus": { "major_radius": 1, "minor_radius": 0.4 } }, "color": "#00ff00",
-                  "rotation": [0.7071068, 0, 0, 0.7071068], "position": [-1.5, 0, -8], "model": "contracted" },
+                  "rotation": [0.6, 0, 0, 0.8], "position": [-1.5, 0, -8], "model": "contracted" },
                 { "name": "sphere", "shape": { "sphere": { "radius": 1 } }, "color": "#ff0000",
                   "position": [0, 1.5, 4], "velocity": { "beta": 0.3, "direction": [1, 0, 0] }, "model": "delayed" },
             ]}),
