@@ -100,7 +100,7 @@ fn pictures_that_make_no_sense_are_refused_before_any_work() {
         ("--from 1,2,3", vec!["--view outside"]),
         ("--together", vec!["--view outside"]),
         ("--axes", vec!["--axes", "--sheet"]),
-        ("--ghost rest", vec!["--ghost", "--view outside"]),
+        ("--ghost flat", vec!["--ghost", "contracted"]),
         ("--wireframe", vec!["--wireframe", "--method mesh"]),
         ("--sheet --view outside", vec!["cannot be used with"]),
         (
@@ -168,7 +168,7 @@ fn a_sheet_shows_every_step_twice() {
         let [above, below] = halves(&pixels(&run.success().stdout));
         let [plain_above, plain_below] = halves(&plain);
         let expected = match changed {
-            "--fov 90" => [true, true],
+            "--fov 90" | "--ghost rest" => [true, true],
             "--method mesh" => [true, false],
             _ => [false, true],
         };
