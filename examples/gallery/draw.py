@@ -42,6 +42,7 @@ PLANE = {
 
 GUIDES = "--axes --scale-bar"
 WHITE = "--background #ffffff"
+LATTICE = "--steps 3.4 --fov 110 --look 0,0,-1 --size 480x300"
 
 PICTURES = [
     ("sphere", None, f"--example sphere --view outside --together --size 1200x260 --fov 10 {GUIDES} {WHITE}"),
@@ -60,6 +61,14 @@ PICTURES = [
     ("figure_8", None, "--example flight --size 480x300 --steps 2.1"),
     ("figure_9", None, "--example flight --size 480x300 --steps 3.7"),
     ("takeoff", None, "--example takeoff --sheet --size 240x180"),
+    ("effects_none", None, f"--example lattice {LATTICE}"),
+    ("effects_doppler", None, f"--example lattice {LATTICE} --doppler spectrum"),
+    ("effects_searchlight", None, f"--example lattice {LATTICE} --searchlight --exposure auto"),
+    ("effects_both", None, f"--example lattice {LATTICE} --doppler spectrum --searchlight --exposure auto"),
+    ("night_at_rest", None, "--example night --beta 0 --size 480x300"),
+    ("night", None, "--example night --size 480x300"),
+    ("stars_at_rest", None, "--example stars --beta 0 --full-sky --background #000000 --size 480x240"),
+    ("stars", None, "--example stars --full-sky --background #000000 --size 480x240"),
     ("models", None, "--example models --models seen,delayed,contracted,rest --sheet --size 240x200"),
 ]
 
