@@ -2,17 +2,9 @@
 //!
 //! # Derivation
 //!
-//! Light that travels in the unit direction `d` has in a frame that moves with rapidity `eta` along `n`, `theta` between
-//! `n` and `d`, the frequency and the direction
-//!
-//! ```text
-//! D = sin^2(theta/2) e^eta + cos^2(theta/2) e^-eta        D d' = d_across + n (cos^2(theta/2) e^-eta - sin^2(theta/2) e^eta)
-//! sin(theta/2) = |d - n| / 2                              cos(theta/2) = |d + n| / 2
-//! ```
-//!
-//! relative to those here: the textbook's `gamma (1 - beta cos theta)`, of which nothing cancels. A surface sees a lamp at
-//! the distance `R` at rest with the lamp at `D R` in its own frame, since the vector between the two events is a null one:
-//! so `D = R_s / R`. With the spectral radiance of a black body, which is that of `D T` where it was that of `T`, and the
+//! Light of a lamp arrives with the factor `D`, frequency in the frame of the surface over that in the lamp's own. A surface
+//! sees a lamp at the distance `R` at rest with the lamp at `D R` in its own frame, since the vector between the two events
+//! is a null one: so `D = R_s / R`. With the spectral radiance of a black body, which is that of `D T` where it was that of `T`, and the
 //! solid angle, which goes as `1 / D^2`, the irradiance of a small black body of temperature `T` is in the frame of the
 //! surface
 //!
@@ -28,7 +20,7 @@ use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
 
 use glam::DVec3;
 
-use crate::spacetime::{Event, Lorentz, Velocity};
+use crate::spacetime::{Event, Lorentz, MovedLight, Velocity};
 
 /// Doppler factors beyond these and their squares are not within `f64` by far; colder or hotter is nothing to see.
 const FACTORS: (f64, f64) = (1e-140, 1e140);
@@ -75,23 +67,11 @@ pub struct PointLight {
 /// 700 (`tests/it/effects/lamps.rs`), for a direction whose own last place is exact.
 pub fn arrival(here_to_there: &Lorentz, travel: DVec3) -> Arrival {
     let boost = here_to_there.boost_velocity();
-    let (along, grow) = (boost.direction(), boost.stretch());
-    let (to_front, to_back) = (travel - along, travel + along);
-    let ahead = to_front.length_squared() / 4.0 * grow;
-    let behind = to_back.length_squared() / 4.0 / grow;
-    // Of the closer of both differences: its part along the motion, which is that of a rounded unit vector, would be large
-    // beside a small part across.
-    let closer = match to_front.length_squared() < to_back.length_squared() {
-        true => to_front,
-        false => to_back,
-    };
-    let across = along.cross(closer).cross(along);
-    let factor = ahead + behind;
-    // Divided before it is squared: the factor may be as large as exp(700).
-    let there = across / factor + along * ((behind - ahead) / factor);
+    let (motion, grow) = (boost.direction(), boost.stretch());
+    let light = MovedLight::new(travel, motion, grow, 1.0 / grow);
     Arrival {
-        travel: here_to_there.rotation() * there.normalize(),
-        factor,
+        travel: here_to_there.rotation() * light.direction(motion).normalize(),
+        factor: light.factor,
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::cone::Cone;
-use crate::spacetime::{Moment, ViewModel, WorldLine, unit};
+use crate::spacetime::{Moment, MovedLight, ViewModel, WorldLine, unit};
 
 /// How light that an observer sees at one event came, for everything that moves with one velocity.
 ///
@@ -100,10 +100,10 @@ impl Aberration {
 
     /// The ray that is seen in the unit direction `seen`.
     pub(super) fn ray(&self, seen: DVec3) -> RestRay {
-        let Light {
+        let MovedLight {
             across,
-            par,
-            stretch,
+            along: par,
+            factor: stretch,
         } = self.light(seen);
         let doppler = match self.model {
             ViewModel::Seen => 1.0 / stretch,
@@ -154,45 +154,21 @@ impl Aberration {
     /// `N_across + (N.n) (gamma n + gamma beta x / |x|)`. With `x / |x| = v / r` and
     /// `gamma (1 + beta v_par / r) = 1 / r` that is, times `r`, `r N_across + (N.n) (n + gamma beta s_across)`.
     pub(super) fn normal_at_rest(&self, normal: DVec3, seen: DVec3) -> Option<DVec3> {
-        let Light {
-            across, stretch, ..
-        } = self.light(seen);
+        let MovedLight { across, factor, .. } = self.light(seen);
         let normal = self.observer_to_boosted * normal;
         let normal_along = normal.dot(self.along);
         let normal_across = self.along.cross(normal).cross(self.along);
         let slanted = self.along + across * self.rapidity.sinh();
-        let of_stand_in = normal_across * stretch + slanted * normal_along;
+        let of_stand_in = normal_across * factor + slanted * normal_along;
         let longer = self.along * ((self.longer - 1.0) * self.along.dot(of_stand_in));
         unit(of_stand_in + longer)
     }
 
-    fn light(&self, seen: DVec3) -> Light {
+    /// The line of sight in the rest frame of the stand-in.
+    fn light(&self, seen: DVec3) -> MovedLight {
         let seen = self.observer_to_boosted * seen;
-        let (to_front, to_back) = (seen - self.along, seen + self.along);
-        let sin_squared = to_front.length_squared() / 4.0;
-        let cos_squared = to_back.length_squared() / 4.0;
-        let Self { grow, shrink, .. } = *self;
-        // Of the closer of both differences: its part along the motion, which is that of a rounded unit vector,
-        // would be large beside a small part across.
-        let closer = if sin_squared < cos_squared {
-            to_front
-        } else {
-            to_back
-        };
-        let across = self.along.cross(closer).cross(self.along);
-        Light {
-            across,
-            par: cos_squared * shrink - sin_squared * grow,
-            stretch: cos_squared * shrink + sin_squared * grow,
-        }
+        MovedLight::new(seen, self.along, self.grow, self.shrink)
     }
-}
-
-/// The kernel of [`Aberration`]: `s_across`, `v_par` and `r`.
-struct Light {
-    across: DVec3,
-    par: f64,
-    stretch: f64,
 }
 
 #[cfg(test)]

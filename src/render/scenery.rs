@@ -1,5 +1,6 @@
 //! What stands before the camera, and the picture of it.
 
+use std::collections::HashMap;
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -21,7 +22,7 @@ use crate::material::{Material, Part};
 use crate::mesh::Mesh;
 use crate::scene::{Effects, Emission, Object, Scene, Source};
 use crate::shape::{Appearance, Color, Shape};
-use crate::spacetime::{Moment, Velocity};
+use crate::spacetime::{Moment, Velocity, VelocityKey};
 
 /// How far facets of a round shape are from it, as a part of its size: less than a tenth of a pixel where it fills
 /// a picture 1000 pixels wide.
@@ -356,11 +357,11 @@ impl Scenery {
 
     fn lit<'a>(&'a self, lamps: &'a Lamps, viewpoint: Viewpoint) -> Lit<'a> {
         let mut velocities: Vec<Velocity> = Vec::new();
+        let mut places: HashMap<VelocityKey, usize> = HashMap::new();
         let mut frames = Vec::with_capacity(self.bodies.len());
         for body in &self.bodies {
             let velocity = body.stands.velocity().unwrap_or_default();
-            let known = velocities.iter().rposition(|&known| known == velocity);
-            frames.push(known.unwrap_or_else(|| {
+            frames.push(*places.entry(velocity.key()).or_insert_with(|| {
                 velocities.push(velocity);
                 velocities.len() - 1
             }));

@@ -3,6 +3,8 @@
 //! A straight way of light is straight in every frame. So everything that rests in one frame is asked in that frame, whatever
 //! it is elsewhere: where the light reaches the surface, which way it came, and how far.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 
 use super::aberration::Aberration;
@@ -10,7 +12,7 @@ use super::body::{Body, Geometry, Stands};
 use super::bounds::Bounds;
 use super::ray::Ray;
 use super::tree::Tree;
-use crate::spacetime::{Lorentz, Moment, Velocity, ViewModel, WorldLine};
+use crate::spacetime::{Lorentz, Moment, Velocity, VelocityKey, ViewModel, WorldLine};
 
 /// A surface of facets does not shadow itself closer than this part of its size: there it may be so far from the surface
 /// that it stands for.
@@ -63,6 +65,7 @@ impl<'a> Shadows<'a> {
     /// The shadows of these bodies, of those at rest among them.
     pub(super) fn new(bodies: impl Iterator<Item = &'a Body>, moment: &Moment) -> Self {
         let mut starts: Vec<(WorldLine, Vec<Occluder<'a>>)> = Vec::new();
+        let mut places: HashMap<VelocityKey, usize> = HashMap::new();
         for body in bodies {
             let Stands::AtRest(line, _) = body.stands else {
                 continue;
@@ -70,10 +73,7 @@ impl<'a> Shadows<'a> {
             if body.paint.is_blended() {
                 continue;
             }
-            let same = starts
-                .iter()
-                .position(|(first, _)| first.velocity == line.velocity);
-            let place = same.unwrap_or_else(|| {
+            let place = *places.entry(line.velocity.key()).or_insert_with(|| {
                 starts.push((line, vec![]));
                 starts.len() - 1
             });

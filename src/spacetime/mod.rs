@@ -6,6 +6,7 @@
 mod event;
 pub(crate) mod exact;
 mod flight;
+mod light;
 mod lorentz;
 mod moment;
 mod rotation;
@@ -18,10 +19,12 @@ pub use event::Event;
 pub use flight::{
     Flight, FlightError, Integrator, IntegratorError, Segment, SegmentError, Steering, Step,
 };
+pub(crate) use light::MovedLight;
 pub use lorentz::Lorentz;
 pub use moment::Moment;
 pub use rotation::{LookingError, Rotation, RotationError};
 pub(crate) use vector::{harmless_scale, heading, length, unit};
+pub(crate) use velocity::VelocityKey;
 pub use velocity::{MAX_RAPIDITY, Velocity, VelocityError};
 pub use view_model::{UnknownModel, ViewModel};
 pub use world_line::WorldLine;

@@ -31,6 +31,10 @@ pub struct Velocity {
     heading: DVec3,
 }
 
+/// What tells velocities apart as `==` does, for maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct VelocityKey([u64; 8]);
+
 /// Why numbers do not make a [`Velocity`].
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -281,6 +285,15 @@ impl Velocity {
     /// The four-velocity `(gamma, gamma beta n)`: the change of an event with the proper time of something that moves so.
     pub fn four_velocity(&self) -> Event {
         Event::new(self.gamma(), self.direction * self.gamma_beta())
+    }
+
+    /// A key for maps.
+    pub(crate) fn key(&self) -> VelocityKey {
+        let [a, b, c] = self.direction.to_array();
+        let [x, y, z] = self.heading.to_array();
+        // Adding zero makes one of both zeros.
+        let numbers = [self.rapidity, self.stretch, a, b, c, x, y, z];
+        VelocityKey(numbers.map(|number| (number + 0.0).to_bits()))
     }
 
     /// The velocity with which this one's rest frame sees its reference frame move, axes related
