@@ -6,7 +6,7 @@ use super::picture_settings::PictureView;
 use super::rendered::RenderError;
 use super::views::Views;
 use crate::render::{Scenery, Viewpoint};
-use crate::scene::Stops;
+use crate::scene::{Exposure, Stops};
 
 /// So many steps at most are looked at, with so many rays together.
 const MAX_STEPS: usize = 24;
@@ -18,11 +18,26 @@ const PART: f64 = 0.95;
 /// The luminance up to which a screen shows light as it is.
 const BRIGHT: f64 = 0.8;
 
-/// The exposure of all views: one for all of them, so that they can be compared.
+/// Finds the exposure of views whose scenes leave it to be found: one for all of them, so that they can be compared.
 ///
 /// Light is measured where the observer sees it. For views from outside, which show all of the photosurfaces, rays go in
 /// the directions of vertices.
-pub(super) fn found_exposure(views: &Views, scenery: &Scenery) -> Result<Stops, RenderError> {
+pub(super) fn expose(all: &mut [Views]) -> Result<(), RenderError> {
+    let is_auto = |views: &&mut Views| views.placed.scene().effects().exposure == Exposure::Auto;
+    let mut found = Vec::new();
+    for views in all.iter_mut().filter(is_auto) {
+        let of_scene = views.with_all_at_rest(|scenery| luminances(views, scenery))?;
+        found.extend(of_scene);
+    }
+    let stops = exposure(found);
+    for views in all.iter_mut().filter(is_auto) {
+        views.set_exposure(stops);
+    }
+    Ok(())
+}
+
+/// The luminances of surfaces that the observer sees.
+fn luminances(views: &Views, scenery: &Scenery) -> Result<Vec<f64>, RenderError> {
     let steps = views.steps().end;
     let looked_at = steps.min(MAX_STEPS);
     let fov = views.observer_fov_deg()?;
@@ -38,7 +53,7 @@ pub(super) fn found_exposure(views: &Views, scenery: &Scenery) -> Result<Stops, 
         let moment = views.moment(step)?;
         luminances.extend(scenery.luminances(Viewpoint::Observer(&moment), &directions));
     }
-    Ok(exposure(luminances))
+    Ok(luminances)
 }
 
 /// Directions of some of the vertices, from the observer.

@@ -14,6 +14,7 @@ mod exposure;
 mod extent;
 mod files;
 mod framing;
+mod grid;
 mod guides;
 mod input;
 mod legend;

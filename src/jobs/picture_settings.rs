@@ -7,8 +7,8 @@ use glam::DVec3;
 
 use super::files::file_for_each_step;
 use super::framing::{Aim, CameraSettings, FieldOfView, OBSERVER_FOV_DEG};
+use super::grid::grid_size;
 use super::guides::Guides;
-use super::sheet::grid_size;
 use crate::pipeline::SurfaceOptions;
 use crate::render::{CameraError, PictureOptions, PictureSize};
 use crate::shape::Color;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::exposure::expose;
 use super::files::check_outputs;
 use super::picture_settings::{PictureSettings, PictureView};
 use super::progress::Progress;
@@ -58,7 +59,7 @@ pub fn render<E: From<RenderError>>(
     let steps = placed.scene().steps().len();
     progress.begin(settings.rows(steps));
     let mut views = Views::new(placed, textures, settings, progress);
-    views.expose()?;
+    expose(std::slice::from_mut(&mut views))?;
     match settings.view {
         PictureView::Observer(_) => {
             let fov = views.observer_fov_deg()?;

@@ -1,9 +1,11 @@
 //! Pictures of several scenes side by side, a column for each: one scene under several models, for example.
 
+use super::exposure::expose;
+use super::grid::{Grid, grid_size};
 use super::picture_settings::{PictureSettings, PictureView};
 use super::progress::Progress;
 use super::rendered::{RenderError, Rendered};
-use super::sheet::{Grid, grid_size, label_of};
+use super::sheet::label_of;
 use super::views::Views;
 use crate::pipeline::PlacedScene;
 use crate::render::{CameraError, Picture, PictureSize, Textures};
@@ -74,13 +76,14 @@ pub fn render_side_by_side<E: From<RenderError>>(
         settings,
         steps,
     };
+    expose(&mut row.views)?;
     let size = side_by_side_size(settings, columns.len(), steps);
     let size = size.map_err(|source| RenderError::Sheet { steps, source })?;
     match settings.view {
         PictureView::Observer(_) => {
             let fov = row.fov_deg()?;
             for step in 0..steps {
-                let mut grid = Grid::new(size, settings);
+                let mut grid = Grid::new(size, settings.camera.size, settings.background);
                 row.draw(&mut grid, 0, |views, _| views.observer(step, fov))?;
                 finished(step, &grid.picture)?;
             }
@@ -95,7 +98,7 @@ pub fn render_side_by_side<E: From<RenderError>>(
                 false => (0..steps).map(|step| (step, step + 1)).collect(),
             };
             for (number, (from, to)) in pictures.into_iter().enumerate() {
-                let mut grid = Grid::new(size, settings);
+                let mut grid = Grid::new(size, settings.camera.size, settings.background);
                 row.draw(&mut grid, 0, |views, column| {
                     views.outside(from..to, &cameras[column])
                 })?;
@@ -112,7 +115,7 @@ pub fn render_side_by_side<E: From<RenderError>>(
             }
             let cameras = settings.camera.outside_cameras(from, &frames);
             let cameras = cameras.map_err(RenderError::from)?;
-            let mut grid = Grid::new(size, settings);
+            let mut grid = Grid::new(size, settings.camera.size, settings.background);
             for step in 0..steps {
                 let cameras = &cameras[step * columns.len()..];
                 row.draw(&mut grid, 2 * step, |views, _| views.observer(step, fov))?;

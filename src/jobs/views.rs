@@ -6,7 +6,6 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use super::exposure::found_exposure;
 use super::extent::{middle_of_sky, outermost};
 use super::framing::{OutsideCamera, seen_vertices};
 use super::guides::Ghost;
@@ -20,7 +19,7 @@ use crate::render::{
     Camera, Picture, PictureEffects, PictureOptions, Scenery, Strokes, Textures, Viewpoint,
     grid_places,
 };
-use crate::scene::Exposure;
+use crate::scene::Stops;
 use crate::shape::Color;
 use crate::spacetime::Moment;
 
@@ -77,29 +76,23 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// Finds the exposure of all views, if the scene leaves it to be found.
-    pub(super) fn expose(&mut self) -> Result<(), RenderError> {
-        let Some(effects) = &self.effects else {
-            return Ok(());
-        };
-        if self.placed.scene().effects().exposure != Exposure::Auto {
-            return Ok(());
+    /// What `look` makes of all objects in their rest frames, with the effects that the scene calls for.
+    pub(super) fn with_all_at_rest<T>(&self, look: impl FnOnce(&Scenery) -> T) -> T {
+        match &self.at_rest {
+            Some(scenery) => look(scenery),
+            None => look(&at_rest(self.placed, self.textures, self.effects.as_ref())),
         }
-        let made;
-        let scenery = match &self.at_rest {
-            Some(scenery) => scenery,
-            None => {
-                made = at_rest(self.placed, self.textures, Some(effects));
-                &made
-            }
-        };
-        let stops = found_exposure(self, scenery)?;
-        let effects = effects.clone().with_exposure(stops);
-        if let Some(scenery) = &mut self.at_rest {
+    }
+
+    /// Sets the exposure of all views.
+    pub(super) fn set_exposure(&mut self, stops: Stops) {
+        self.effects = self
+            .effects
+            .take()
+            .map(|effects| effects.with_exposure(stops));
+        if let Some((scenery, effects)) = self.at_rest.as_mut().zip(self.effects.as_ref()) {
             scenery.set_effects(effects.clone());
         }
-        self.effects = Some(effects);
-        Ok(())
     }
 
     /// Draws what explains the colours of a view, if they need it.

@@ -152,6 +152,22 @@ fn pictures_have_models_side_by_side() {
     assert!(run.stdout.is_empty());
     workplace.read("two_step000.png");
     workplace.read("two_step001.png");
+    // One exposure for all columns: that of the bright photosurface darkens what is at rest beside it.
+    let picture = |flags: &str| {
+        let line = format!(
+            "render plain.json --steps 0 --size 40x30 --samples 1 --searchlight {flags} -o -"
+        );
+        let bytes = workplace.run(&line).success().stdout;
+        image::load_from_memory(&bytes).unwrap().into_rgb8()
+    };
+    let brightest = |picture: &image::RgbImage, columns: std::ops::Range<u32>| {
+        let pixels = picture.enumerate_pixels();
+        let inside = pixels.filter(|(x, y, _)| columns.contains(x) && *y > 12);
+        inside.map(|(_, _, pixel)| pixel.0[1]).max().unwrap()
+    };
+    let alone = picture("--models rest --exposure auto");
+    let beside = picture("--models seen,rest --exposure auto");
+    assert!(brightest(&beside, 44..84) < brightest(&alone, 0..40));
     workplace
         .run("render plain.json --models seen,rest --size 16000x10 -o wide.png")
         .error(&["--models", "side by side"]);
