@@ -6,6 +6,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use photosurface::pipeline::PlacedSceneError;
 use photosurface::write::Format;
 use photosurface::{PlacedScene, Scene, load_models};
 use serde_json::{Value, json};
@@ -97,6 +98,8 @@ impl Case {
                 _ => json!("exact"),
             };
         }
+        // After flights for the same reason.
+        light(given, &mut scene);
         Self {
             scene,
             mesh,
@@ -115,7 +118,11 @@ impl Case {
             std::fs::write(folder.join(MESH), &self.mesh).expect("a temporary folder takes a file");
         }
         let (models, _) = load_models(&scene, folder).ok()?;
-        Some(PlacedScene::new(scene, models).expect("one model an object"))
+        match PlacedScene::new(scene, models) {
+            // Without contraction an object may be longer than any number.
+            Err(PlacedSceneError::Reach { .. }) => None,
+            placed => Some(placed.expect("one model an object")),
+        }
     }
 
     /// The flags of `photosurface export` that do the same.
@@ -193,6 +200,53 @@ fn tolerance(given: &mut Given<'_>) -> Option<Value> {
         0 => None,
         kind => Some(json!({ unit[usize::from(kind) - 1]: given.length() })),
     }
+}
+
+/// Models, effects on light, black bodies and lamps.
+fn light(given: &mut Given<'_>, scene: &mut Value) {
+    let models = [None, Some("delayed"), Some("contracted"), Some("rest")];
+    if let Some(model) = models[usize::from(given.choice(4))] {
+        scene["model"] = model.into();
+    }
+    let doppler = [None, Some(json!("spectrum")), Some(json!("ramp"))];
+    let doppler = doppler.into_iter().nth(given.choice(3).into()).flatten();
+    if let Some(doppler) = doppler {
+        scene["effects"] = json!({ "doppler": doppler });
+    }
+    if given.choice(2) == 1 {
+        scene["effects"]["searchlight"] = true.into();
+    }
+    if given.choice(4) == 1 {
+        scene["objects"][0]["emission"] = json!({ "kelvin": given.length() });
+    }
+    let lamps: Vec<_> = (0..given.choice(3)).map(|_| lamp(given)).collect();
+    if !lamps.is_empty() {
+        scene["lamps"] = lamps.into();
+    }
+}
+
+/// A lamp of one of its kinds.
+fn lamp(given: &mut Given<'_>) -> Value {
+    let mut lamp = match given.choice(4) {
+        0 => json!({ "sun": { "direction": given.vector(), "irradiance": given.length() } }),
+        1 => json!({ "ambient": { "irradiance": given.length() } }),
+        kind => {
+            let mut lamp =
+                json!({ "point": { "position": given.vector(), "intensity": given.length() } });
+            match kind {
+                2 => lamp["object"] = "object0".into(),
+                _ => lamp["velocity"] = velocity(given),
+            }
+            if given.choice(3) == 1 {
+                lamp["flash"] = json!({ "from": given.number(), "to": given.number() });
+            }
+            lamp
+        }
+    };
+    if given.choice(2) == 1 {
+        lamp["kelvin"] = given.length().into();
+    }
+    lamp
 }
 
 /// A segment of a flight.

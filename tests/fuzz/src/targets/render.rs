@@ -1,6 +1,10 @@
 //! The whole way to a small picture.
 
-use photosurface::render::{Camera, PictureOptions, PictureSize, Projection, Scenery, Viewpoint};
+use std::sync::Arc;
+
+use photosurface::render::{
+    Camera, PictureEffects, PictureOptions, PictureSize, Projection, Scenery, Viewpoint,
+};
 use photosurface::shape::Color;
 use photosurface::tessellate::Precision;
 use photosurface::{PlacedScene, SurfaceOptions};
@@ -79,8 +83,19 @@ fn take(case: &Case, placed: PlacedScene) {
     }
 }
 
-fn at_rest(placed: &PlacedScene) -> Scenery {
+/// Nothing yet, in the light that the scene calls for.
+fn lit(placed: &PlacedScene) -> Scenery {
     let mut scenery = Scenery::new();
+    let effects = placed.scene().effects();
+    if effects.is_some() {
+        scenery.set_effects(PictureEffects::new(effects));
+    }
+    scenery.set_lamps(placed.scene());
+    scenery
+}
+
+fn at_rest(placed: &PlacedScene) -> Scenery {
+    let mut scenery = lit(placed);
     for (object, parts) in placed.objects() {
         for (_, part) in parts {
             scenery.add_at_rest(object, part);
@@ -90,7 +105,8 @@ fn at_rest(placed: &PlacedScene) -> Scenery {
 }
 
 fn photosurfaces(placed: &PlacedScene, step: usize, wanted: SurfaceOptions) -> Scenery {
-    let mut scenery = Scenery::new();
+    let mut scenery = lit(placed);
+    scenery.set_occluders(&Arc::new(at_rest(placed)));
     if let Some(marker) = placed.marker() {
         scenery.add_in_view(marker);
     }
