@@ -258,6 +258,45 @@ impl PhotosurfaceMap {
         (self.larger_singular_value(c, s) * (1.0 + 16.0 * f64::EPSILON)).min(everywhere)
     }
 
+    /// An upper bound on how many times the map stretches lengths of something that is first made `elongation` times as long
+    /// along the motion, about the observer, in the ball of `radius` around `offset`, both before that.
+    ///
+    /// # Derivation
+    ///
+    /// With `k` the elongation, the derivative of both together is `I - n n^T + n b^T`, with `b = k D n + gamma beta s_across`
+    /// and the Doppler factor `D` and the direction `s` after the elongation. Its larger singular value is half the sum of
+    /// the distances of `(k D, gamma beta |s_across|)` from `(1, 0)` and from `(-1, 0)`, which grows with both coordinates.
+    /// Each of them is bounded over the cylinder around the ball.
+    pub(super) fn elongated_stretch_bound(
+        &self,
+        elongation: f64,
+        offset: DVec3,
+        radius: f64,
+    ) -> f64 {
+        let up = 1.0 + 16.0 * f64::EPSILON;
+        let n = self.direction;
+        let par = n.dot(offset);
+        let across = n.cross(offset).length();
+        let radius = radius + 8.0 * f64::EPSILON * length(offset);
+        let (low, high) = (par - radius, par + radius);
+        let (nearest, farthest) = ((across - radius).max(0.0), across + radius);
+        // The smallest angle from the direction of motion, measured from straight behind.
+        let aside = if high > 0.0 { nearest } else { farthest };
+        let from_behind = aside.atan2(-elongation * high) * up;
+        let (sin, cos) = (0.5 * from_behind.min(std::f64::consts::PI)).sin_cos();
+        let doppler = sin * sin * self.stretch + cos * cos * self.squeeze;
+        let beside = match low < 0.0 && high > 0.0 {
+            true => 1.0,
+            false => farthest / farthest.hypot(elongation * low.abs().min(high.abs())),
+        };
+        let (along, slanted) = (elongation * doppler * up, self.gamma_beta * beside * up);
+        let bound = 0.5 * ((along + 1.0).hypot(slanted) + (along - 1.0).hypot(slanted));
+        match bound.is_nan() {
+            true => f64::INFINITY,
+            false => bound * up,
+        }
+    }
+
     /// The largest singular value of [`PhotosurfaceMap::jacobian`]: how many times a small error of an offset is
     /// magnified, at most. It ranges from 1 straight behind the observer to `exp(eta)` straight ahead and at the
     /// observer.

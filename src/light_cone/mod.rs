@@ -15,5 +15,5 @@ mod view;
 pub(crate) use batch::Batch;
 pub(crate) use extremes::Extremes;
 pub use map::PhotosurfaceMap;
-pub use model_view::ModelView;
+pub use model_view::{MAX_DELAYED_RAPIDITY, ModelView};
 pub use view::View;

@@ -5,6 +5,10 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::View;
 use crate::spacetime::ViewModel;
 
+/// The largest relative rapidity at which a scene may show something under [`ViewModel::Delayed`]: its stand-in is `gamma`
+/// times as long as the object, which costs as many digits as `gamma` has.
+pub const MAX_DELAYED_RAPIDITY: f64 = 20.0;
+
 /// How an observer is shown everything that moves along with one object, under a model.
 ///
 /// # Derivation
@@ -52,7 +56,7 @@ impl ModelView {
                 let origin = -(matrix * view.observer_rest());
                 Self {
                     rest_to_stand_in: Some(DAffine3::from_mat3_translation(matrix, origin)),
-                    stand_in: shown.stand_in.with_observer_at_origin(0.0),
+                    stand_in: shown.stand_in.of_stand_in(stretch, 0.0),
                     ..shown
                 }
             }
@@ -112,7 +116,7 @@ impl ModelView {
             Some(_) => {
                 let size = reach + 2.0 * self.view.place_size();
                 let rounded = self.stretch().max(1.0) * size;
-                self.stand_in.with_observer_at_origin(rounded)
+                self.stand_in.of_stand_in(self.stretch(), rounded)
             }
         }
     }
@@ -264,6 +268,49 @@ mod tests {
                 (found * arrives / later - 1.0).abs() < 1e-6,
                 "{place}: {found}"
             );
+        }
+    }
+
+    /// Distances between shown points against the bound, and the bound of a tiny ball against the slope itself.
+    #[test]
+    fn no_two_points_of_a_facet_are_shown_farther_apart_than_bounded() {
+        for (beta, model) in [0.3, 0.9, 0.999, 0.999_999]
+            .iter()
+            .flat_map(|&beta| ViewModel::ALL.map(|model| (beta, model)))
+        {
+            let view = view(velocity(beta, DVec3::new(1.0, -1.0, 0.3)), Velocity::ZERO);
+            let shown = ModelView::new(view, model);
+            let to_stand_in = |place| {
+                shown
+                    .rest_to_stand_in()
+                    .map_or(place, |there| there.transform_point3(place))
+            };
+            for place in PLACES {
+                for size in [1e-4, 0.3] {
+                    let corners = [DVec3::X, DVec3::Y, DVec3::new(-0.5, -1.0, 0.7)]
+                        .map(|corner| place + size * corner);
+                    let bound = shown
+                        .of_stand_in(20.0)
+                        .facet_stretch_bound(corners.map(to_stand_in));
+                    let mut largest = 0.0_f64;
+                    for step in 0..400 {
+                        let turn = |by: f64| (f64::from(step) * by).fract() - 0.5;
+                        let ends = [[0.618, 0.414, 0.732], [0.236, 0.317, 0.162]]
+                            .map(|by| place + size * DVec3::from(by.map(turn)));
+                        let [a, b] = ends.map(|end| shown.shown_position(end));
+                        largest = largest.max(a.distance(b) / ends[0].distance(ends[1]));
+                    }
+                    assert!(
+                        // Differences of rounded places.
+                        largest <= bound * (1.0 + 1e-9),
+                        "{model} {beta} {place} {size}: {largest} {bound}"
+                    );
+                    assert!(
+                        size > 0.1 || bound <= 1.5 * largest,
+                        "{model} {beta} {place}: {largest} {bound}"
+                    );
+                }
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 //! photosurface map.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
+use rayon::prelude::*;
 
 use super::PhotosurfaceMap;
 use crate::spacetime::{Event, Lorentz, Moment, Velocity, WorldLine, length};
@@ -28,6 +29,8 @@ pub struct View {
     /// The rotation that follows the boost, as a matrix.
     turn: DMat3,
     map: PhotosurfaceMap,
+    /// How many times as long along the motion what is viewed is as what it stands for.
+    elongation: f64,
 }
 
 impl View {
@@ -59,6 +62,7 @@ impl View {
             rest_to_observer,
             turn: DMat3::from_quat(rest_to_observer.rotation()),
             map: PhotosurfaceMap::new(&relative),
+            elongation: 1.0,
         }
     }
 
@@ -89,13 +93,27 @@ impl View {
         }
     }
 
-    /// The same view of things that are given relative to the observer, each rounded by a few units in the last place of
-    /// `place_size`.
-    pub(super) fn with_observer_at_origin(&self, place_size: f64) -> Self {
+    /// The same view of a stand-in that is `elongation` times as long along the motion, given relative to the observer, each
+    /// point rounded by a few units in the last place of `place_size`.
+    pub(super) fn of_stand_in(&self, elongation: f64, place_size: f64) -> Self {
         Self {
             observer_rest: DVec3::ZERO,
             place_size,
+            elongation,
             ..*self
+        }
+    }
+
+    /// An upper bound on the stretch at all of these points and between them.
+    pub(crate) fn largest_stretch_at(&self, positions_rest: &[DVec3]) -> f64 {
+        let forwardness = positions_rest
+            .par_iter()
+            .map(|&place| self.forwardness(place));
+        let farthest = forwardness.reduce(|| 0.0, f64::max);
+        // All directions within a right angle from behind are a convex cone, those of a wider angle are not.
+        match farthest < 1.0 {
+            true => self.stretch_toward(farthest * (1.0 + 16.0 * f64::EPSILON)),
+            false => self.relative_velocity().stretch(),
         }
     }
 
@@ -161,6 +179,27 @@ impl View {
         self.map.stretch_bound(offset, radius + rounding)
     }
 
+    /// An upper bound on how many times farther apart two points are shown than they are at rest, if what stands for them
+    /// is in the ball around the corners of a triangle: see [`local_stretch`](crate::tessellate::local_stretch).
+    pub(crate) fn facet_stretch_bound(&self, corners: [DVec3; 3]) -> f64 {
+        if self.elongation == 1.0 {
+            let (middle, radius) = ball_around(corners);
+            return self.stretch_bound(middle, radius);
+        }
+        let along = self.relative_velocity().direction();
+        let shorter = self.elongation.recip() - 1.0;
+        let at_rest = corners.map(|corner| corner + along * (shorter * along.dot(corner)));
+        let (middle, radius) = ball_around(at_rest);
+        let rounding = 4.0 * f64::EPSILON * length(middle);
+        self.map
+            .elongated_stretch_bound(self.elongation, middle, radius + rounding)
+    }
+
+    /// How many times as long along the motion what is viewed is as what it stands for.
+    pub(crate) fn elongation(&self) -> f64 {
+        self.elongation
+    }
+
     /// A number that grows with the stretch at a point: the argument of [`View::stretch_toward`].
     pub(crate) fn forwardness(&self, position_rest: DVec3) -> f64 {
         self.map.forwardness(self.offset(position_rest))
@@ -203,6 +242,16 @@ impl View {
         }
         self.turn * vector
     }
+}
+
+/// Centre and radius of a ball around the centroid of a triangle that reaches twice as far as the corners.
+fn ball_around([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
+    let middle = (a + b + c) / 3.0;
+    let reach = [a, b, c]
+        .map(|corner| corner.distance(middle))
+        .into_iter()
+        .fold(0.0, f64::max);
+    (middle, 2.0 * reach)
 }
 
 #[cfg(test)]

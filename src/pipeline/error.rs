@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::light_cone::MAX_DELAYED_RAPIDITY;
 use crate::scene::InvalidScene;
 use crate::spacetime::MAX_RAPIDITY;
 
@@ -42,6 +43,17 @@ pub enum PlacedSceneError {
         /// The observer, or the name of the object.
         who: String,
         /// The rapidity of its velocity.
+        rapidity: f64,
+    },
+    /// An object is too fast for the model without contraction.
+    #[error(
+        "object \"{object}\" has the rapidity {rapidity:.6} relative to the observer, expected at most \
+         {MAX_DELAYED_RAPIDITY} for the model \"delayed\""
+    )]
+    Delayed {
+        /// The object in the scene.
+        object: String,
+        /// The relative rapidity at the step at which it is found too large.
         rapidity: f64,
     },
     /// What stands for an object without contraction is too large.

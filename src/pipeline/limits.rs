@@ -107,7 +107,8 @@ impl StepTolerance {
             aimed,
             aimed_length: length_of(aimed, seen),
             deviation: 0.0,
-            placed_deviation: shaped.map_or(0.0, |shaped| shaped.deviation),
+            placed_deviation: shaped.map_or(0.0, |shaped| shaped.deviation)
+                * view.elongation().max(1.0),
             precision,
             box_of_all_steps: None,
         }
@@ -159,8 +160,14 @@ impl StepTolerance {
         around: Option<(DVec3, DVec3)>,
         bulge: f64,
     ) -> f64 {
-        let (center, radius) = ball(mesh);
-        let stretch = self.view.stretch_bound(center, radius);
+        let stretch = match self.view.elongation() {
+            1.0 => {
+                let (center, radius) = ball(mesh);
+                self.view.stretch_bound(center, radius)
+            }
+            // A ball around something so long would reach to where it is not.
+            _ => self.view.largest_stretch_at(mesh.positions()),
+        };
         let in_file = match (self.precision, around) {
             (Precision::Single, Some((low, high))) => Some(Singles {
                 extent: high - low + bulge,

@@ -82,11 +82,10 @@ impl PlacedObject {
         };
         let stand_in = Self {
             parts: stretched(&self.parts, &to_stand_in),
+            // Deviations stay those at rest: the stretch of facets counts the elongation.
             shaped: self.shaped.as_ref().map(|shaped| Shaped {
-                shape: shaped.shape.clone(),
                 model_to_rest: to_stand_in * shaped.model_to_rest,
-                largest_scale: shaped.largest_scale * shown.stretch().max(1.0),
-                deviation: shaped.deviation * shown.stretch().max(1.0),
+                ..shaped.clone()
             }),
             ..self.clone()
         };

@@ -12,7 +12,7 @@ use super::placed_object::{PlacedObject, Shaped, triangle_count};
 use super::plan::{Plan, Unrefined};
 use super::vertex_data::VertexData;
 use super::{MomentFacts, Photosurface, PlacedSceneError, SurfaceOptions};
-use crate::light_cone::{ModelView, View};
+use crate::light_cone::{MAX_DELAYED_RAPIDITY, ModelView, View};
 use crate::material::{Model, Part};
 use crate::scene::{Attribute, Emission, MarkerRadius, Object, Scene, Source, Tolerance};
 use crate::shape::{Appearance, Color, Shape};
@@ -155,6 +155,11 @@ impl PlacedScene {
             }
             for step in 0..self.scene.steps().len() {
                 let shown = self.model_view(object, step).expect(A_STEP);
+                let rapidity = shown.view().relative_velocity().rapidity();
+                if rapidity > MAX_DELAYED_RAPIDITY {
+                    let object = object.name.clone();
+                    return Err(PlacedSceneError::Delayed { object, rapidity });
+                }
                 let reach = placed_object.reach(shown.view().observer_rest());
                 let reach = reach * shown.stretch();
                 if !(reach <= MAX_REACH) {

@@ -11,10 +11,9 @@ const SLOW: f64 = 1e-3;
 
 /// An upper bound on how many times the photosurface map stretches lengths near a triangle at rest. The bound holds in
 /// a ball around the triangle's centroid that reaches twice as far as the corners, and so contains a curved surface
-/// through the corners.
+/// through the corners. For a triangle of a stand-in, ball and lengths are those of what it stands for.
 pub(crate) fn local_stretch(view: &View, corners: [DVec3; 3]) -> f64 {
-    let (middle, radius) = ball(corners);
-    view.stretch_bound(middle, radius)
+    view.facet_stretch_bound(corners)
 }
 
 /// The largest [`local_stretch`] of `count` triangles, 0 of none; `corners` has the corners of each.
@@ -28,7 +27,7 @@ pub(crate) fn largest_stretch(
 ) -> f64 {
     let exact = |index: usize| local_stretch(view, corners(index));
     let velocity = view.relative_velocity();
-    if !(velocity.rapidity() > SLOW) {
+    if !(velocity.rapidity() > SLOW) || view.elongation() != 1.0 {
         return (0..count)
             .into_par_iter()
             .map(exact)
@@ -57,7 +56,7 @@ pub(crate) fn largest_stretch(
     near.map(exact).reduce(|| 0.0, f64::max)
 }
 
-/// Centre and radius of the ball of [`local_stretch`].
+/// Centre and radius of the ball of [`local_stretch`], except of stand-ins.
 fn ball([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     let middle = (a + b + c) / 3.0;
     let reach = [a, b, c]

@@ -119,8 +119,8 @@ impl Case {
         }
         let (models, _) = load_models(&scene, folder).ok()?;
         match PlacedScene::new(scene, models) {
-            // Without contraction an object may be longer than any number.
-            Err(PlacedSceneError::Reach { .. }) => None,
+            // Without contraction an object may be too fast, or longer than any number.
+            Err(PlacedSceneError::Delayed { .. } | PlacedSceneError::Reach { .. }) => None,
             placed => Some(placed.expect("one model an object")),
         }
     }
