@@ -6,7 +6,7 @@ use anyhow::{Context, anyhow, bail, ensure};
 use photosurface::jobs::{Aim, CameraSettings, FieldOfView, FramingError, RenderError};
 use photosurface::render::{CameraError, PictureSize};
 use photosurface::shape::Color;
-use photosurface::{DVec3, PictureMethod, PictureSettings, PictureView};
+use photosurface::{DVec3, PictureMethod, PictureSettings, PictureView, Scene};
 
 use super::args::{Given, number, refuse, vector};
 
@@ -29,7 +29,7 @@ pub(super) struct CameraArgs {
     fov: Option<f64>,
     /// Show the whole sky as a longitude-latitude map
     #[arg(long, conflicts_with = "fov")]
-    full_sky: bool,
+    pub(super) full_sky: bool,
     /// Direction in which the camera looks, of any length [default: towards the middle of the objects; for an observer
     /// who flies, or whose axes are turned, its own -z]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, conflicts_with = "target")]
@@ -51,9 +51,9 @@ pub(super) struct CameraArgs {
     /// Antialias with N x N rays per pixel, N from 1 to 16
     #[arg(long, value_name = "N", default_value = "3", value_parser = samples, allow_hyphen_values = true)]
     pub(super) samples: NonZeroU32,
-    /// Background colour, #rrggbb
-    #[arg(long, value_name = "COLOR", value_parser = color, default_value = "#14171c")]
-    pub(super) background: Color,
+    /// Background colour, #rrggbb [default: #14171c; black where a scene has lamps, black bodies or the searchlight effect]
+    #[arg(long, value_name = "COLOR", value_parser = color)]
+    background: Option<Color>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -118,6 +118,16 @@ impl CameraArgs {
         self.sheet || method == Method::Mesh
     }
 
+    /// The background of pictures of a scene: where brightness tells something, nothing is darker than it.
+    pub(super) fn background(&self, scene: &Scene, default: Color) -> Color {
+        let mut objects = scene.objects().iter();
+        let tells = scene.effects().shown().searchlight
+            || !scene.lamps().is_empty()
+            || objects.any(|object| object.emission.is_some());
+        let default = if tells { Color([0; 3]) } else { default };
+        self.background.unwrap_or(default)
+    }
+
     /// The pictures that the flags ask for; `is_mesh` is whether a mesh alone is looked at, without a scene.
     pub(super) fn settings(&self, method: Method, is_mesh: bool) -> PictureSettings {
         let view = self.picture_view(method.into());
@@ -128,7 +138,6 @@ impl CameraArgs {
             aim: self.aim(),
         };
         settings.samples = self.samples;
-        settings.background = self.background;
         settings
     }
 

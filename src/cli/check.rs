@@ -13,7 +13,7 @@ use super::args::{InputArgs, ObserverArgs};
 use super::effects::EffectArgs;
 use super::input::Input;
 use super::messages::{Verbosity, counted, print_if_open, shown};
-use super::models::ModelArgs;
+use super::models::ModelsArgs;
 use super::output::FileFormat;
 use super::status::Status;
 use super::wording::or_ply;
@@ -35,7 +35,7 @@ pub(super) struct CheckArgs {
     #[command(flatten)]
     observer: ObserverArgs,
     #[command(flatten)]
-    model: ModelArgs,
+    models: ModelsArgs,
     #[command(flatten)]
     effects: EffectArgs,
     #[command(flatten)]
@@ -59,9 +59,8 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
     let mut status = Status::Done;
     let verbosity = Verbosity::new(args.quiet, args.verbose);
     let input = Input::read(&args.input, &args.observer, verbosity)?;
-    let scene = args.model.scene(args.accuracy.scene(input.scene));
-    let scene = args.effects.scene(scene);
-    let placed = PlacedScene::new(scene, input.models)?;
+    let scene = args.effects.scene(args.accuracy.scene(input.scene));
+    let placed = args.models.placed(scene, input.models)?;
     for (name, part) in placed.objects().flat_map(|(_, parts)| parts) {
         verbosity.detail(format_args!(
             "{name}: {}, {}",

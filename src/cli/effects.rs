@@ -4,28 +4,22 @@ use photosurface::Scene;
 use photosurface::effects::{Doppler, Spectrum};
 use photosurface::scene::{Effects, Exposure};
 
-/// The Doppler effect alone.
+use super::messages::Verbosity;
+
+/// Effects, and the exposure.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Effects (override the scene)")]
-pub(super) struct DopplerArgs {
+pub(super) struct EffectArgs {
     /// Show the Doppler effect: "spectrum", the colours of the shifted light, at the brightness that surfaces have at rest;
     /// "ramp", the Doppler factor as a colour, blue above 1 and red below; "none" [default: none]
     #[arg(long, value_enum)]
     doppler: Option<DopplerName>,
-}
-
-/// All effects.
-#[derive(Debug, clap::Args)]
-#[command(next_help_heading = "Effects (override the scene)")]
-pub(super) struct EffectArgs {
-    #[command(flatten)]
-    doppler: DopplerArgs,
     /// Show the searchlight effect: how much brighter or darker the shifted light is to the eye; with --doppler spectrum, the
     /// whole shifted spectrum
     #[arg(long)]
     searchlight: bool,
-    /// Make pictures brighter by a number of stops, each a factor of 2, or by "auto" as bright as a screen can show, all of
-    /// them alike [default: 0]
+    /// Make pictures, and colours of vertices, brighter by a number of stops, each a factor of 2; pictures by "auto" as bright
+    /// as a screen can show, all of them alike; without effect on the colours of a ramp [default: 0]
     #[arg(long, value_name = "STOPS|auto", value_parser = exposure, allow_hyphen_values = true)]
     exposure: Option<Exposure>,
 }
@@ -37,14 +31,7 @@ enum DopplerName {
     None,
 }
 
-impl DopplerArgs {
-    /// The scene with the Doppler effect that the flag says.
-    pub(super) fn scene(&self, scene: Scene) -> Scene {
-        let effects = scene.effects();
-        let doppler = self.doppler(effects.doppler);
-        scene.with_effects(Effects { doppler, ..effects })
-    }
-
+impl EffectArgs {
     fn doppler(&self, of_scene: Doppler) -> Doppler {
         match (self.doppler, of_scene) {
             // With what the scene says of spectra.
@@ -56,18 +43,26 @@ impl DopplerArgs {
             (Some(DopplerName::None), _) => Doppler::None,
         }
     }
-}
 
-impl EffectArgs {
     /// The scene with the effects that the flags say.
     pub(super) fn scene(&self, scene: Scene) -> Scene {
-        let scene = self.doppler.scene(scene);
         let effects = scene.effects();
         scene.with_effects(Effects {
+            doppler: self.doppler(effects.doppler),
             searchlight: self.searchlight || effects.searchlight,
             exposure: self.exposure.unwrap_or(effects.exposure),
-            ..effects
         })
+    }
+}
+
+/// Says what a ramp leaves out.
+pub(super) fn tell_of_ramp(scene: &Scene, verbosity: Verbosity) {
+    let effects = scene.effects();
+    let is_less = effects != effects.shown() || !scene.lamps().is_empty();
+    if effects.doppler == Doppler::Ramp && is_less {
+        verbosity.note(format_args!(
+            "the ramp is a scale: its colours are seen by the lamp at the eye, without the searchlight effect, exposure and lamps"
+        ));
     }
 }
 

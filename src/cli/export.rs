@@ -15,7 +15,7 @@ use photosurface::{ExportSettings, Exported, PlacedScene, Textures};
 
 use super::accuracy::{AccuracyArgs, DetailArgs};
 use super::args::{InputArgs, ObserverArgs, number};
-use super::effects::DopplerArgs;
+use super::effects::{EffectArgs, tell_of_ramp};
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print, size, stdout_is_closed};
 use super::models::ModelsArgs;
@@ -39,7 +39,7 @@ pub(super) struct ExportArgs {
     #[command(flatten)]
     observer: ObserverArgs,
     #[command(flatten)]
-    effects: DopplerArgs,
+    effects: EffectArgs,
     #[command(flatten)]
     models: ModelsArgs,
     #[command(flatten)]
@@ -131,12 +131,9 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
         input.scene = input.scene.with_attributes(attributes);
     }
     let path = output.path(&input.name);
-    let scene = args.models.scene(args.accuracy.scene(input.scene));
-    let scene = args.effects.scene(scene);
-    let placed = match args.models.side_by_side()? {
-        [] => PlacedScene::new(scene, input.models)?,
-        models => PlacedScene::side_by_side(scene, &input.models, models)?,
-    };
+    let scene = args.effects.scene(args.accuracy.scene(input.scene));
+    tell_of_ramp(&scene, args.verbosity);
+    let placed = args.models.placed(scene, input.models)?;
     let settings = args.settings(start, &input.textures);
     let levels = export_levels(&placed, &settings, format, &path).map_err(in_words_of_flags)?;
     check_destinations(levels.iter().flat_map(ExportLevel::outputs), &input.files)?;

@@ -1,8 +1,8 @@
 //! Flags that say which effects of special relativity shapes are shown with.
 
 use anyhow::ensure;
-use photosurface::Scene;
 use photosurface::spacetime::ViewModel;
+use photosurface::{Model, PlacedScene, Scene};
 
 use super::args::Given;
 
@@ -50,6 +50,15 @@ impl ModelsArgs {
     /// The scene under the model that the flag says.
     pub(super) fn scene(&self, scene: Scene) -> Scene {
         self.one.scene(scene)
+    }
+
+    /// The scene under its models, or under several side by side.
+    pub(super) fn placed(&self, scene: Scene, models: Vec<Model>) -> anyhow::Result<PlacedScene> {
+        let scene = self.scene(scene);
+        Ok(match self.side_by_side()? {
+            [] => PlacedScene::new(scene, models)?,
+            view_models => PlacedScene::side_by_side(scene, &models, view_models)?,
+        })
     }
 
     /// The models that are to stand side by side, each once; none for those of the scene.

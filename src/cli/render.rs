@@ -15,8 +15,8 @@ use photosurface::{DVec3, PictureView, PlacedScene};
 
 use super::accuracy::AccuracyArgs;
 use super::args::{InputArgs, ObserverArgs};
-use super::camera::{CameraArgs, View};
-use super::effects::EffectArgs;
+use super::camera::{CameraArgs, Method, View};
+use super::effects::{EffectArgs, tell_of_ramp};
 use super::guides::GuideArgs;
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print};
@@ -101,6 +101,8 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     let scene = args.models.scene(args.accuracy.scene(input.scene));
     let scene = args.effects.scene(scene);
     let placed = PlacedScene::new(scene.clone(), input.models)?;
+    tell_of_ramp(&scene, verbosity);
+    settings.background = camera.background(&scene, settings.background);
     settings.guides = guides.into();
     settings.surface_options = args.accuracy.wanted(Precision::Double);
     let fits_budget = camera.shows_meshes(method) && settings.surface_options.subdivide;
@@ -132,7 +134,8 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     })?;
     progress.finish();
     tell_of_costs(&rendered.costs, verbosity);
-    tell_of_empty(&rendered.empty, steps, camera.sheet, verbosity);
+    let views = steps * models.len().max(1);
+    tell_of_empty(&rendered.empty, views, camera, method, verbosity);
     tell_of_missing(&input.textures, &scene, verbosity);
     if !is_stdout(&files[0]) {
         verbosity.result(format_args!(
@@ -175,29 +178,51 @@ fn tell_of_costs(costs: &[ViewCost], verbosity: Verbosity) {
 }
 
 /// Says where nothing is to be seen, and where there would be something.
-fn tell_of_empty(empty: &[EmptyView], steps: usize, is_sheet: bool, verbosity: Verbosity) {
+fn tell_of_empty(
+    empty: &[EmptyView],
+    views: usize,
+    camera: &CameraArgs,
+    method: Method,
+    verbosity: Verbosity,
+) {
     let Some(first) = empty.first() else {
         return;
     };
     let DVec3 { x, y, z } = first.look;
-    let which = match steps {
+    let which = match views {
         1 => "nothing is to be seen in the picture".to_owned(),
-        _ => format!("nothing is to be seen at {} of {steps} steps", empty.len()),
+        _ => format!(
+            "nothing is to be seen in {} of {views} observer's views",
+            empty.len()
+        ),
     };
-    let advice = format!("--look={x:.3},{y:.3},{z:.3} with a --fov, or --full-sky");
-    let advice = match is_sheet {
+    let sky = if camera.full_sky {
+        ""
+    } else {
+        ", or --full-sky"
+    };
+    let advice = format!("--look={x:.3},{y:.3},{z:.3} with a --fov{sky}");
+    let advice = match camera.sheet {
         true => format!("a picture of its own without --sheet, with {advice}"),
         false => advice,
     };
+    // A tolerance that is a part of the photosurface may be more than the way to it.
+    let coarse = match method {
+        Method::Mesh => ", or nearer than the tolerance (try --tolerance deg:0.05)",
+        Method::Rays => "",
+    };
     verbosity.note(format_args!(
-        "{which}: every object is in another direction, or smaller than a pixel; try {advice}"
+        "{which}: every object is in another direction, smaller than a pixel{coarse}; try {advice}"
     ));
 }
 
 /// What is where in a picture, and in which colour.
 fn legend(args: &RenderArgs) -> String {
     let rows = args.camera.sheet.then_some(
-        "above, what the observer sees at each step (τ: its proper time); below, the photosurface from outside",
+        match args.models.side_by_side() {
+            Ok([]) | Err(_) => "above, what the observer sees at each step (τ: its proper time); below, the photosurface from outside",
+            Ok(_) => "a column for each model; above, what the observer sees, below, the same from outside; steps below each other",
+        },
     );
     let legend = rows.into_iter().chain(args.guides.legend());
     legend.map(|words| format!("; {words}")).collect()

@@ -20,7 +20,7 @@ pub(super) fn in_words_of_flags(error: ExportError) -> anyhow::Error {
         ),
         ExportError::MorphingColors => anyhow!(
             "--animate=morph shows one mesh, and colours as the observer sees them (Doppler effect, black bodies) differ from \
-             step to step; use --animate=frames, or --doppler none"
+             step to step; use --animate=frames, or a scene without these effects"
         ),
         ExportError::RepeatedLevel(tolerance) => {
             anyhow!("--lod names the tolerance {tolerance} twice")

@@ -51,24 +51,25 @@ impl EffectCost {
                 scenery.add_at_rest(object, part);
             }
         }
-        let mut seconds = [0.0; 2];
-        let mut met = 0;
-        for seconds in &mut seconds {
+        let look = |scenery: &Scenery, directions: &[DVec3]| {
             let start = Instant::now();
-            let viewpoint = Viewpoint::Observer(&moment);
-            met = scenery.luminances(viewpoint, &directions).len();
-            *seconds = start.elapsed().as_secs_f64();
-            scenery.set_lamps(scene);
-        }
+            let met = scenery.luminances(Viewpoint::Observer(&moment), directions);
+            (start.elapsed().as_secs_f64(), met.len())
+        };
+        let (without, met) = look(&scenery, &directions);
+        scenery.set_lamps(scene);
+        // Before the first ray there is something to do for lamps, however few rays there are.
+        let (start_seconds, _) = look(&scenery, &directions[..directions.len().min(1)]);
+        let (with, _) = look(&scenery, &directions);
         Some(Self {
             effect: "lamps",
-            start_seconds: 0.0,
-            seconds_each: (seconds[1] - seconds[0]).max(0.0) / met.max(1) as f64,
+            start_seconds,
+            seconds_each: (with - start_seconds - without).max(0.0) / met.max(1) as f64,
         })
     }
 
     fn of_scene(scene: &Scene) -> Vec<Self> {
-        let effects = scene.effects();
+        let effects = scene.effects().shown();
         let mut costs = Vec::new();
         if effects.doppler != Doppler::None {
             let light = SeenLight::new(effects.doppler, false);

@@ -23,7 +23,8 @@ const BRIGHT: f64 = 0.8;
 /// Light is measured where the observer sees it. For views from outside, which show all of the photosurfaces, rays go in
 /// the directions of vertices.
 pub(super) fn expose(all: &mut [Views]) -> Result<(), RenderError> {
-    let is_auto = |views: &&mut Views| views.placed.scene().effects().exposure == Exposure::Auto;
+    let is_auto =
+        |views: &&mut Views| views.placed.scene().effects().shown().exposure == Exposure::Auto;
     let mut found = Vec::new();
     for views in all.iter_mut().filter(is_auto) {
         let of_scene = views.with_all_at_rest(|scenery| luminances(views, scenery))?;

@@ -1,5 +1,7 @@
 //! Guides that help to read a picture: ghosts, axes, a scale bar, labels.
 
+use std::collections::HashSet;
+
 use glam::{DAffine3, DVec2, DVec3};
 
 use super::framing::OutsideCamera;
@@ -26,7 +28,7 @@ pub struct Guides {
     /// Models under which each object is hinted at beside what is shown of it: the photosurface green, delayed violet,
     /// contracted orange, at rest blue. A model that is listed twice is drawn twice.
     ///
-    /// A ghost at rest is moved to the place where the object's middle is seen.
+    /// An object has no ghost under the model that it is shown under. A ghost at rest is moved to the place where the object's middle is seen.
     pub ghosts: Vec<ViewModel>,
     /// Whether the observer's axes are drawn at the observer in views from outside: x red, y green, z blue.
     pub axes: bool,
@@ -68,10 +70,16 @@ impl Guides {
     ) -> Result<Vec<Ghost>, PlacedSceneError> {
         let mut ghosts = Vec::new();
         for &model in &self.ghosts {
+            // Nothing is a ghost of itself.
+            let objects = placed.scene().objects().iter();
+            let shown = objects.filter(|object| object.view_model() == model);
+            let shown: HashSet<String> = shown.map(|object| object.name.clone()).collect();
             let meshes = match model.has_delay() {
                 true => {
                     let placed = placed.clone().with_model_for_all(model)?;
                     let surfaces = placed.photosurfaces(step, options)?;
+                    let surfaces =
+                        surfaces.filter(|surface| !shown.contains(&surface.facts.object));
                     surfaces.map(|surface| surface.mesh).collect()
                 }
                 false => straight_ghosts(placed, model, step),
@@ -112,6 +120,9 @@ impl Guides {
 fn straight_ghosts(placed: &PlacedScene, model: ViewModel, step: usize) -> Vec<Mesh> {
     let mut meshes = Vec::new();
     for (object, parts) in placed.objects() {
+        if object.view_model() == model {
+            continue;
+        }
         let Some(view) = placed.view(object, step) else {
             return meshes;
         };

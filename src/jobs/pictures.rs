@@ -64,17 +64,22 @@ pub fn render<E: From<RenderError>>(
         PictureView::Observer(_) => {
             let fov = views.observer_fov_deg()?;
             for step in 0..steps {
-                finished(step, &views.observer(step, fov)?)?;
+                let mut picture = views.observer(step, fov)?;
+                views.draw_legend(&mut picture);
+                finished(step, &picture)?;
             }
         }
         PictureView::Outside { from, together } => {
             let camera = views.outside_camera(from)?;
-            if together {
-                finished(0, &views.outside(0..steps, &camera)?)?;
-            } else {
-                for step in 0..steps {
-                    finished(step, &views.outside(step..step + 1, &camera)?)?;
-                }
+            let pictures = if together { 1 } else { steps };
+            for number in 0..pictures {
+                let shown = match together {
+                    true => 0..steps,
+                    false => number..number + 1,
+                };
+                let mut picture = views.outside(shown, &camera)?;
+                views.draw_legend(&mut picture);
+                finished(number, &picture)?;
             }
         }
         PictureView::Sheet { from, .. } => finished(0, &draw_sheet(&mut views, from)?)?,

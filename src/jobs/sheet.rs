@@ -25,7 +25,10 @@ pub(super) fn draw_sheet(views: &mut Views, from: Option<DVec3>) -> Result<Pictu
             &label_of(scene.steps()[step]),
             settings.background,
         );
-        let below = views.outside(step..step + 1, camera)?;
+        let mut below = views.outside(step..step + 1, camera)?;
+        if step + 1 == steps {
+            views.draw_legend(&mut below);
+        }
         grid.place(&above, step, 0);
         grid.place(&below, step, 1);
     }

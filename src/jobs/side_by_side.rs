@@ -168,6 +168,10 @@ impl Row<'_> {
                 };
                 super::guides::label(&mut picture, &text, self.settings.background);
             }
+            let is_last_row = (row + 1) as u32 == grid.rows();
+            if is_last_row && number + 1 == self.columns.len() {
+                views.draw_legend(&mut picture);
+            }
             grid.place(&picture, number, row);
         }
         Ok(())

@@ -41,6 +41,8 @@ pub enum ColorNote {
     },
     /// An exposure that is found for pictures alone.
     Exposure,
+    /// Lamps, which light pictures alone.
+    Lamps,
 }
 
 impl fmt::Display for ColorNote {
@@ -55,6 +57,9 @@ impl fmt::Display for ColorNote {
                     "became colours of vertices, which show no more of it than the mesh has vertices",
                 )
             }
+            Self::Lamps => f.write_str(
+                "the scene's lamps light pictures; files have materials and colours without their light",
+            ),
             Self::Exposure => f.write_str(
                 "the exposure \"auto\" is for pictures; colours of vertices have an exposure of 0 stops",
             ),
@@ -66,7 +71,7 @@ impl<'a> VertexColors<'a> {
     /// What colours the photosurfaces of a scene, if the scene calls for colours.
     pub(super) fn new(placed: &'a PlacedScene, textures: &Textures) -> Option<Self> {
         let scene = placed.scene();
-        let effects = scene.effects();
+        let effects = scene.effects().shown();
         let objects = scene.objects().iter();
         Self::are_wanted(scene).then(|| Self {
             objects: objects.map(|o| (o.name.as_str(), o)).collect(),
@@ -85,7 +90,12 @@ impl<'a> VertexColors<'a> {
     /// Whether a scene calls for colours of vertices.
     pub(super) fn are_wanted(scene: &Scene) -> bool {
         let mut objects = scene.objects().iter();
-        scene.effects().doppler != Doppler::None || objects.any(|object| object.emission.is_some())
+        let Effects {
+            doppler,
+            searchlight,
+            ..
+        } = scene.effects().shown();
+        doppler != Doppler::None || searchlight || objects.any(|object| object.emission.is_some())
     }
 
     /// What is wanted of photosurfaces, with what colours need.
@@ -104,15 +114,22 @@ impl<'a> VertexColors<'a> {
     ) -> Photosurface {
         let emission = self.objects.get(photosurface.facts.object.as_str());
         let emission = emission.and_then(|object| object.emission);
-        if emission.is_some() || self.effects.doppler != Doppler::None {
+        if emission.is_some() || self.light.is_shifted() {
             let colors = self.colors(&photosurface, emission);
             let mesh = photosurface.mesh.with_colors(colors);
             photosurface.mesh = mesh.expect("one finite colour for each vertex");
+            let before = photosurface.material.clone();
             photosurface.material = match (emission, photosurface.material) {
                 (Some(_), _) => Some(self.glowing.get_or_insert_with(glowing).clone()),
                 (None, Some(material)) => Some(self.plain(material, &photosurface.facts.object)),
                 (None, None) => None,
             };
+            let textures = |material: &Arc<Material>| material.textures().len();
+            let has_textures = photosurface.material.as_ref().map_or(0, textures) > 0;
+            // Programs that find coordinates look for a texture in place of the colours.
+            if before.is_some() && !has_textures {
+                photosurface.mesh = photosurface.mesh.without_texture_coordinates();
+            }
         }
         if !asked_for.contains(Attribute::Doppler) {
             photosurface.vertex_data.set(Attribute::Doppler, None);

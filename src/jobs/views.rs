@@ -58,7 +58,7 @@ impl<'a> Views<'a> {
             }
             PictureView::Outside { .. } => false,
         };
-        let effects = placed.scene().effects();
+        let effects = placed.scene().effects().shown();
         let effects = effects.is_some().then(|| PictureEffects::new(effects));
         let only_rays = matches!(settings.view, PictureView::Observer(PictureMethod::Rays));
         let shows_mapped = !only_rays && !placed.scene().lamps().is_empty();
@@ -95,8 +95,8 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// Draws what explains the colours of a view, if they need it.
-    fn draw_legend(&self, picture: &mut Picture) {
+    /// Draws what explains the colours of a view, if they need it; once on a picture of several views.
+    pub(super) fn draw_legend(&self, picture: &mut Picture) {
         if self.placed.scene().effects().doppler == Doppler::Ramp {
             draw_ramp_legend(picture);
         }
@@ -195,7 +195,6 @@ impl<'a> Views<'a> {
             let look = middle_of_sky(&places);
             self.rendered.empty.push(EmptyView { step, look });
         }
-        self.draw_legend(&mut picture);
         Ok(picture)
     }
 
@@ -223,7 +222,6 @@ impl<'a> Views<'a> {
         settings
             .guides
             .draw(&mut picture, outside, &scenery, &edges, background);
-        self.draw_legend(&mut picture);
         Ok(picture)
     }
 
@@ -324,7 +322,10 @@ fn new_scenery(
     if let Some(effects) = effects {
         scenery.set_effects(effects.clone());
     }
-    scenery.set_lamps(placed.scene());
+    // A ramp is seen by the lamp at the eye: its colours are a scale.
+    if placed.scene().effects().doppler != Doppler::Ramp {
+        scenery.set_lamps(placed.scene());
+    }
     scenery
 }
 

@@ -62,7 +62,7 @@ impl Work<'_> {
             return photosurface;
         };
         let photosurface = colors.colored(photosurface, self.wanted.attributes);
-        self.clock.stop("doppler");
+        self.clock.stop("effects");
         photosurface
     }
 
@@ -169,10 +169,14 @@ impl Work<'_> {
         }
     }
 
-    /// What is to be said of the colours of vertices.
+    /// What is to be said of light and colours that files do not hold as pictures do.
     pub(super) fn notes(&self) -> Vec<ColorNote> {
         let colors = self.colors.as_ref();
-        colors.map_or(vec![], |colors| colors.notes().to_vec())
+        let mut notes = colors.map_or(vec![], |colors| colors.notes().to_vec());
+        if !self.placed.scene().lamps().is_empty() {
+            notes.push(ColorNote::Lamps);
+        }
+        notes
     }
 
     /// The report of everything made, with the times of the stages. The facts go into it.

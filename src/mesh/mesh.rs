@@ -217,6 +217,15 @@ impl Mesh {
         })
     }
 
+    /// The mesh without places on textures, and without the tangents that these make.
+    pub(crate) fn without_texture_coordinates(self) -> Self {
+        Self {
+            texture_coordinates: vec![],
+            tangents: None,
+            ..self
+        }
+    }
+
     /// The mesh moved, turned, scaled or mirrored; mirrored triangles keep their outside.
     ///
     /// A transform that is not finite, or that takes a vertex beyond `f64`, makes a mesh with vertices that are not finite:

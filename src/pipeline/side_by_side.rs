@@ -14,8 +14,8 @@ impl PlacedScene {
     /// A scene with all objects under each of these models, whatever the scene says; `models` are one for each object of
     /// `scene`.
     ///
-    /// Files move what is shown under all models but the first aside, along x or z of the observer's frame, so that nothing
-    /// overlaps at any step. Each object has the name of its model behind its own, as `ball_delayed`.
+    /// Files move what is shown under all models but the first: aside along x of the observer's frame, so that nothing overlaps
+    /// at any step, and along y and z to the middle of the first. Each object has the name of its model behind its own, as `ball_delayed`.
     ///
     /// # Errors
     ///
@@ -35,20 +35,20 @@ impl PlacedScene {
     fn with_groups_apart(mut self, groups: usize) -> Result<Self, PlacedSceneError> {
         let in_each = self.objects.len() / groups.max(1);
         let boxes = self.boxes_of_groups(groups)?;
-        let extents = |axis: usize| boxes.iter().map(move |(low, high)| high[axis] - low[axis]);
-        let largest = |axis: usize| extents(axis).fold(0.0, f64::max);
-        let axis = if largest(0) <= largest(2) { 0 } else { 2 };
-        let gap = GAP * largest(axis);
-        let mut end = f64::NAN;
-        for (&(low, high), objects) in boxes.iter().zip(self.objects.chunks_mut(in_each.max(1))) {
-            let aside = if end.is_nan() {
-                0.0
-            } else {
-                end + gap - low[axis]
-            };
-            end = high[axis] + aside;
-            for object in objects.iter_mut().filter(|_| aside.is_finite()) {
-                object.beside[axis] = aside;
+        let largest = boxes.iter().map(|(low, high)| high.x - low.x);
+        let gap = GAP * largest.fold(0.0, f64::max);
+        let middle = |(low, high): (DVec3, DVec3)| 0.5 * low + 0.5 * high;
+        let Some(&first) = boxes.first() else {
+            return Ok(self);
+        };
+        let mut end = first.1.x;
+        let others = boxes.iter().zip(self.objects.chunks_mut(in_each.max(1)));
+        for (&around, objects) in others.skip(1) {
+            let mut beside = middle(first) - middle(around);
+            beside.x = end + gap - around.0.x;
+            end = around.1.x + beside.x;
+            for object in objects.iter_mut().filter(|_| beside.is_finite()) {
+                object.beside = beside;
             }
         }
         Ok(self)

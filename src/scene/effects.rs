@@ -63,6 +63,17 @@ pub enum EffectsError {
 }
 
 impl Effects {
+    /// The effects that change what is shown: a ramp is a scale, whose colours no brightness changes.
+    pub fn shown(self) -> Self {
+        match self.doppler {
+            Doppler::Ramp => Self {
+                doppler: Doppler::Ramp,
+                ..Self::default()
+            },
+            Doppler::None | Doppler::Spectrum(_) => self,
+        }
+    }
+
     /// Whether there are any.
     pub fn is_some(&self) -> bool {
         *self != Self::default()

@@ -379,8 +379,8 @@ impl TryFrom<FromObject<LampFields>> for Lamp {
             (Some(FromObject(point)), None, None) => Self::point(point.position, point.intensity)?,
             (None, Some(FromObject(sun)), None) => Self::sun(sun.direction.into(), sun.irradiance)?,
             (None, None, Some(FromObject(ambient))) => Self::ambient(ambient.irradiance)?,
-            (None, None, None) => return Err(LampError::Sources("none of them")),
-            _ => return Err(LampError::Sources("several of them")),
+            (None, None, None) => return Err(LampError::Sources("no source")),
+            _ => return Err(LampError::Sources("several sources")),
         };
         lamp = match (fields.kelvin, fields.color) {
             (Some(_), Some(_)) => return Err(LampError::TwoColors),
@@ -509,12 +509,12 @@ mod tests {
             (
                 "{}".into(),
                 "lamps[1]",
-                "none of them, expected exactly one of \"point\", \"sun\"",
+                "no source, expected exactly one of \"point\", \"sun\"",
             ),
             (
                 of_point(r#""ambient": { "irradiance": 1 }"#),
                 "lamps[1]",
-                "several of them",
+                "several sources",
             ),
             (
                 of_point(r##""kelvin": 3000, "color": "#ffffff""##),

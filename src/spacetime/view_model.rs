@@ -4,14 +4,14 @@ use std::fmt;
 use std::str::FromStr;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-use thiserror::Error;
+use serde::de::{Error, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// Which effects of special relativity an object is shown with.
 ///
 /// Two effects change the shape of whatever moves: it *is* shorter along its motion, and it is *seen* where each of its
 /// points was when the light left. A model has both, one or neither. All four agree at the observer's place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Deserialize, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(inline)]
 pub enum ViewModel {
@@ -27,7 +27,7 @@ pub enum ViewModel {
 }
 
 /// A name that is none of a [`ViewModel`].
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown model \"{0}\", expected one of {names}", names = ViewModel::ALL.map(ViewModel::name).join(", "))]
 pub struct UnknownModel(String);
 
@@ -59,6 +59,27 @@ impl ViewModel {
 impl fmt::Display for ViewModel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for ViewModel {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Name;
+
+        impl Visitor<'_> for Name {
+            type Value = ViewModel;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                let names = ViewModel::ALL.map(|model| format!("\"{model}\""));
+                write!(f, "a model: {}", names.join(", "))
+            }
+
+            fn visit_str<E: Error>(self, name: &str) -> Result<ViewModel, E> {
+                name.parse().map_err(E::custom)
+            }
+        }
+
+        deserializer.deserialize_str(Name)
     }
 }
 

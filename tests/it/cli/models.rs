@@ -63,6 +63,15 @@ fn flag_scene_and_object_say_the_same() {
     workplace
         .run("check wrong.json")
         .error(&["wrong.json", "model", "contracted"]);
+    workplace.write(
+        "number.json",
+        scene(None, None).replacen('{', r#"{ "model": 3, "#, 1),
+    );
+    workplace.run("check number.json").error(&[
+        "number.json",
+        "model",
+        "\"seen\", \"delayed\", \"contracted\", \"rest\"",
+    ]);
     workplace
         .run("check plain.json --model shown")
         .error(&["shown", "seen, delayed, contracted, rest"]);
@@ -186,6 +195,9 @@ fn ghosts_are_in_both_views() {
         for model in MODELS {
             all.push(picture(&format!("{view} --ghost {model}")));
         }
+        // Nothing is a ghost of itself.
+        assert!(all[0] == all[1], "{view}: the ghost of what is seen");
+        all.remove(1);
         for (number, one) in all.iter().enumerate() {
             assert!(
                 all[..number].iter().all(|other| other != one),

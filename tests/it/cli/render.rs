@@ -231,7 +231,8 @@ fn an_empty_picture_is_noted() {
         .run(&format!("{line} --look 0,-1,0.1 --steps 0,1,2"))
         .success();
     assert!(
-        run.stderr.contains("nothing is to be seen at 3 of 3 steps"),
+        run.stderr
+            .contains("nothing is to be seen in 3 of 3 observer's views"),
         "{run}"
     );
 }

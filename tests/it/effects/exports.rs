@@ -50,7 +50,7 @@ fn colours_are_written_where_they_are_asked_for() {
     let (bare, report) = export("");
     let has = |file: &[u8], name: &str| attributes(file).iter().any(|found| found == name);
     assert!(!has(&bare, "COLOR_0") && !has(&bare, "_DOPPLER"));
-    assert!(!stages(&report).contains(&"doppler") && report["scene"].get("effects").is_none());
+    assert!(!stages(&report).contains(&"effects") && report["scene"].get("effects").is_none());
     let (none, _) = export("--doppler none");
     assert_eq!(none, bare);
     for name in ["spectrum", "ramp"] {
@@ -59,7 +59,7 @@ fn colours_are_written_where_they_are_asked_for() {
             has(&colored, "COLOR_0") && !has(&colored, "_DOPPLER"),
             "{name}"
         );
-        assert!(stages(&report).contains(&"doppler"), "{name}");
+        assert!(stages(&report).contains(&"effects"), "{name}");
         assert!(!report["scene"]["effects"]["doppler"].is_null(), "{name}");
         let (both, _) = export(&format!("--doppler {name} --attributes doppler"));
         assert!(has(&both, "COLOR_0") && has(&both, "_DOPPLER"), "{name}");
@@ -147,7 +147,8 @@ fn check_says_what_each_effect_costs() {
         lines[1].starts_with("effect searchlight: about ") && lines[1].contains("1280 x 720"),
         "{both}"
     );
-    let by_flags = workplace.run("check ball.json --doppler ramp --searchlight --exposure auto");
+    let by_flags =
+        workplace.run("check ball.json --doppler spectrum --searchlight --exposure auto");
     for effect in ["effect doppler", "effect searchlight", "effect exposure"] {
         assert!(by_flags.stdout_text().contains(effect), "{by_flags}");
     }
