@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use super::exposure::of_vertices;
-use super::framing::seen_vertices;
+use super::exposure::of_pixels;
+use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
 use crate::effects::{Doppler, SeenLight, tone, within_gamut};
 use crate::pipeline::PlacedScene;
 use crate::render::{Scenery, Viewpoint};
@@ -39,12 +39,13 @@ impl EffectCost {
         costs
     }
 
-    /// The lamps of a scene: the time for rays towards vertices, with and without them.
+    /// The lamps of a scene: the time for some rays of the observer's picture, with and without them.
     fn of_lamps(placed: &PlacedScene) -> Option<Self> {
         let scene = placed.scene();
         let moment = scene.moment(0)?;
-        let places = seen_vertices(placed, 0).ok()?;
-        let directions = of_vertices(&places, LIT_SAMPLE);
+        let picture = PictureSettings::new(PictureView::Observer(PictureMethod::Rays));
+        let cameras = picture.camera.observer_cameras(placed).ok()?;
+        let directions = of_pixels(cameras.first()?, LIT_SAMPLE);
         let mut scenery = Scenery::new();
         for (object, parts) in placed.objects() {
             for (_, part) in parts {

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use super::picture_settings::PictureView;
 use super::rendered::RenderError;
 use super::views::Views;
-use crate::render::{Scenery, Viewpoint};
+use crate::render::{Camera, Scenery, Viewpoint};
 use crate::scene::{Exposure, Stops};
 
 /// So many steps at most are looked at, with so many rays together.
@@ -49,7 +49,7 @@ fn luminances(views: &Views, scenery: &Scenery) -> Result<Vec<f64>, RenderError>
         let places = views.seen_vertices(step)?;
         let directions = match views.settings.view {
             PictureView::Outside { .. } => of_vertices(&places, RAYS / looked_at),
-            _ => of_picture(views, fov, &places, RAYS / looked_at)?,
+            _ => of_pixels(&views.observer_camera(fov, &places)?, RAYS / looked_at),
         };
         let moment = views.moment(step)?;
         luminances.extend(scenery.luminances(Viewpoint::Observer(&moment), &directions));
@@ -58,20 +58,14 @@ fn luminances(views: &Views, scenery: &Scenery) -> Result<Vec<f64>, RenderError>
 }
 
 /// Directions of some of the vertices, from the observer.
-pub(super) fn of_vertices(places: &[DVec3], count: usize) -> Vec<DVec3> {
+fn of_vertices(places: &[DVec3], count: usize) -> Vec<DVec3> {
     let every = places.len().div_ceil(count.max(1)).max(1);
     let some = places.iter().step_by(every);
     some.filter_map(|place| place.try_normalize()).collect()
 }
 
-/// Directions of some of the pixels of the observer's picture.
-fn of_picture(
-    views: &Views,
-    fov_deg: f64,
-    places: &[DVec3],
-    count: usize,
-) -> Result<Vec<DVec3>, RenderError> {
-    let camera = views.observer_camera(fov_deg, places)?;
+/// Directions of some of the pixels of a picture.
+pub(super) fn of_pixels(camera: &Camera, count: usize) -> Vec<DVec3> {
     let size = DVec2::new(camera.size().width().into(), camera.size().height().into());
     let columns = ((count as f64 * size.x / size.y).sqrt() as usize).clamp(1, count.max(1));
     let rows = (count / columns).max(1);
@@ -80,7 +74,7 @@ fn of_picture(
         let cell = DVec2::new(column as f64, row as f64) + 0.5;
         camera.direction(cell / DVec2::new(columns as f64, rows as f64) * size)
     });
-    Ok(middles.collect())
+    middles.collect()
 }
 
 /// The exposure that makes [`PART`] of these luminances at most [`BRIGHT`]; none if nothing is seen.
