@@ -1,6 +1,6 @@
 //! What light does to colours: pure functions of numbers, for meshes and pictures alike.
 //!
-//! Nothing here knows of places, meshes or light cones: each side comes to its numbers in its own way, and stays a
+//! Nothing here knows of meshes or light cones: each side comes to its numbers in its own way, and stays a
 //! witness of the other.
 
 mod cie_1931;

@@ -1,4 +1,4 @@
-//! Temperatures of what glows.
+//! Temperatures of black bodies.
 
 use std::ops::RangeInclusive;
 
