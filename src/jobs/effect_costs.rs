@@ -159,8 +159,11 @@ mod tests {
             costs.iter().map(|cost| cost.effect).collect::<Vec<_>>()
         };
         assert!(costs("{}", "").is_empty());
-        let all = r#"{ "doppler": "ramp", "searchlight": true, "exposure": "auto" }"#;
+        let all = r#"{ "doppler": "spectrum", "searchlight": true, "exposure": "auto" }"#;
         assert_eq!(costs(all, ""), ["doppler", "searchlight", "exposure"]);
+        // A ramp is a scale, which no other effect changes.
+        let ramp = r#"{ "doppler": "ramp", "searchlight": true, "exposure": "auto" }"#;
+        assert_eq!(costs(ramp, ""), ["doppler"]);
         assert_eq!(
             costs("{}", r#", "emission": { "kelvin": 3000 }"#),
             ["emission"]
