@@ -75,7 +75,16 @@ fn flag_scene_and_object_say_the_same() {
     workplace
         .run("check plain.json --model shown")
         .error(&["shown", "seen, delayed, contracted, rest"]);
-    workplace.run("check plain.json --model delayed").success();
+    workplace
+        .run("check plain.json --model delayed --rapidity 10")
+        .success();
+    for command in ["check", "export", "render"] {
+        workplace
+            .run(&format!(
+                "{command} plain.json --model delayed --rapidity 20.1"
+            ))
+            .error(&["\"cube\"", "20.1", "at most 20", "delayed"]);
+    }
 }
 
 /// What is moved aside in a file is otherwise what an export of the model alone is.
