@@ -6,6 +6,7 @@
 //! photosurface is a statement about both (`tests/it/render/pictures.rs`).
 
 mod aberration;
+mod albedo;
 mod body;
 mod bounds;
 mod camera;
