@@ -12,6 +12,7 @@ mod flight_plan;
 mod forms;
 mod json;
 mod lamp;
+mod lamp_form;
 mod marker;
 mod object;
 mod observer;

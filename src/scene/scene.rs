@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::forms::{FromObject, Keyed, Steps};
+use super::lamp_form::LampFields;
 use super::observer::{self, ObserverFields};
 use super::{
     Attributes, Carrier, Effects, InvalidScene, Lamp, LampSource, Object, Observer, Tolerance,
@@ -269,6 +270,7 @@ struct SceneFields {
     attributes: Attributes,
     /// The lamps by which pictures of the scene are lit; without any, a lamp at the eye and a little light from above.
     #[serde(default)]
+    #[schemars(with = "Vec<LampFields>")]
     lamps: Vec<Lamp>,
     /// What becomes of light on its way, beside shapes; nothing if absent.
     #[serde(default)]
