@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use anyhow::{Context, ensure};
 use clap::ValueEnum;
-use photosurface::jobs::{ColorNote, ExportError, ExportLevel, export_levels, write_report};
+use photosurface::jobs::{ExportError, ExportLevel, LightNote, export_levels, write_report};
 use photosurface::pipeline::Facts;
 use photosurface::scene::Attribute;
 use photosurface::write::{Format, Playback, Report, StageTime, WriteError};
@@ -165,7 +165,7 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
 
 /// Makes and writes the photosurfaces of one level of detail; whether all of them are certified, and what is to be said of
 /// their colours.
-fn export(args: &ExportArgs, level: ExportLevel) -> anyhow::Result<(bool, Vec<ColorNote>)> {
+fn export(args: &ExportArgs, level: ExportLevel) -> anyhow::Result<(bool, Vec<LightNote>)> {
     let verbosity = args.verbosity;
     let has_marker = level.placed().marker().is_some();
     let to_stdout = is_stdout(&level.files()[0]);

@@ -21,7 +21,7 @@ const BRIGHTEST: f64 = 1e260;
 /// together are the whole shifted spectrum. The ratio is that which the eye sees, not the fourth power of the Doppler
 /// factor: of daylight seen at 2 it is 8.4.
 ///
-/// Tables are made where a colour first needs them, in some tenths of a second.
+/// Tables are made where a colour first needs them; `photosurface check` says how long all of it takes.
 ///
 /// # Accuracy
 ///

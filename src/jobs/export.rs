@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::clock::Clock;
 use super::files::{check_outputs, file_for_each_step, with_suffix};
-use super::vertex_colors::{ColorNote, VertexColors};
+use super::vertex_colors::{LightNote, VertexColors};
 use super::work::Work;
 use super::{ExportError, ExportSettings, Fitted, Progress, Tally};
 use crate::pipeline::{PlacedScene, SurfaceOptions};
@@ -25,7 +25,7 @@ pub struct Exported {
     /// or a report is written.
     pub report: Report,
     /// What colours of vertices do not show as pictures do.
-    pub notes: Vec<ColorNote>,
+    pub notes: Vec<LightNote>,
 }
 
 /// Writes the photosurfaces of a placed scene to `path`, in the format of its extension (.glb, .gltf or .ply), with the

@@ -56,4 +56,4 @@ pub use progress::{Cancelled, Progress};
 pub use rendered::{EmptyView, RenderError, Rendered, ViewCost};
 pub use side_by_side::{Column, render_side_by_side, side_by_side_size};
 pub use tally::Tally;
-pub use vertex_colors::ColorNote;
+pub use vertex_colors::LightNote;

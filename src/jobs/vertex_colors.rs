@@ -25,13 +25,13 @@ pub(super) struct VertexColors<'a> {
     /// By the address of the material that each stands for, which is kept there.
     materials: HashMap<usize, (Arc<Material>, Arc<Material>)>,
     glowing: Option<Arc<Material>>,
-    notes: Vec<ColorNote>,
+    notes: Vec<LightNote>,
 }
 
-/// What files with colours of vertices do not hold as pictures do.
+/// What files do not hold of light and colours as pictures do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum ColorNote {
+pub enum LightNote {
     /// A texture whose colours became those of vertices.
     Texture {
         /// The first object whose material has it.
@@ -45,7 +45,7 @@ pub enum ColorNote {
     Lamps,
 }
 
-impl fmt::Display for ColorNote {
+impl fmt::Display for LightNote {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Texture { object, material } => {
@@ -81,7 +81,7 @@ impl<'a> VertexColors<'a> {
             materials: HashMap::new(),
             glowing: None,
             notes: match effects.exposure {
-                Exposure::Auto => vec![ColorNote::Exposure],
+                Exposure::Auto => vec![LightNote::Exposure],
                 Exposure::Stops(_) => vec![],
             },
         })
@@ -138,7 +138,7 @@ impl<'a> VertexColors<'a> {
     }
 
     /// What is to be said of the colours so far.
-    pub(super) fn notes(&self) -> &[ColorNote] {
+    pub(super) fn notes(&self) -> &[LightNote] {
         &self.notes
     }
 
@@ -190,7 +190,7 @@ impl<'a> VertexColors<'a> {
             return plain.clone();
         }
         if material.base_color_texture().is_some() && self.effects.doppler != Doppler::Ramp {
-            self.notes.push(ColorNote::Texture {
+            self.notes.push(LightNote::Texture {
                 object: object.to_owned(),
                 material: material.name().map(str::to_owned),
             });

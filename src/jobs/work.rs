@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::ahead::in_order;
 use super::clock::Clock;
-use super::vertex_colors::{ColorNote, VertexColors};
+use super::vertex_colors::{LightNote, VertexColors};
 use super::{Cancelled, Progress, Tally};
 use crate::pipeline::{Facts, Photosurface, PlacedScene, SurfaceOptions};
 use crate::write::{
@@ -170,11 +170,11 @@ impl Work<'_> {
     }
 
     /// What is to be said of light and colours that files do not hold as pictures do.
-    pub(super) fn notes(&self) -> Vec<ColorNote> {
+    pub(super) fn notes(&self) -> Vec<LightNote> {
         let colors = self.colors.as_ref();
         let mut notes = colors.map_or(vec![], |colors| colors.notes().to_vec());
         if !self.placed.scene().lamps().is_empty() {
-            notes.push(ColorNote::Lamps);
+            notes.push(LightNote::Lamps);
         }
         notes
     }

@@ -17,3 +17,4 @@ pub(crate) use extremes::Extremes;
 pub use map::PhotosurfaceMap;
 pub use model_view::{MAX_DELAYED_RAPIDITY, ModelView};
 pub use view::View;
+pub(crate) use view::facet_ball;

@@ -179,17 +179,17 @@ impl View {
         self.map.stretch_bound(offset, radius + rounding)
     }
 
-    /// An upper bound on how many times farther apart two points are shown than they are at rest, if what stands for them
-    /// is in the ball around the corners of a triangle: see [`local_stretch`](crate::tessellate::local_stretch).
+    /// An upper bound on how many times farther apart two points are shown than they are at rest, in the [`facet_ball`] of a
+    /// triangle. For a triangle of a stand-in, ball and distances are those of what it stands for.
     pub(crate) fn facet_stretch_bound(&self, corners: [DVec3; 3]) -> f64 {
         if self.elongation == 1.0 {
-            let (middle, radius) = ball_around(corners);
+            let (middle, radius) = facet_ball(corners);
             return self.stretch_bound(middle, radius);
         }
         let along = self.relative_velocity().direction();
         let shorter = self.elongation.recip() - 1.0;
         let at_rest = corners.map(|corner| corner + along * (shorter * along.dot(corner)));
-        let (middle, radius) = ball_around(at_rest);
+        let (middle, radius) = facet_ball(at_rest);
         let rounding = 4.0 * f64::EPSILON * length(middle);
         self.map
             .elongated_stretch_bound(self.elongation, middle, radius + rounding)
@@ -244,8 +244,9 @@ impl View {
     }
 }
 
-/// Centre and radius of a ball around the centroid of a triangle that reaches twice as far as the corners.
-fn ball_around([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
+/// Centre and radius of a ball around the centroid of a triangle that reaches twice as far as the corners, and so contains a
+/// curved surface through the corners.
+pub(crate) fn facet_ball([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     let middle = (a + b + c) / 3.0;
     let reach = [a, b, c]
         .map(|corner| corner.distance(middle))

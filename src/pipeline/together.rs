@@ -7,7 +7,7 @@ use super::certifying::{Measured, certificate};
 use super::limits::{Limits, bounds};
 use super::making::{Surface, refine_parts};
 use super::mapped_mesh::MappedMesh;
-use super::placed_object::{PlacedObject, triangle_count};
+use super::placed_object::{PlacedObject, stretched, triangle_count};
 use super::plan::{Plan, seen_parts};
 use crate::material::Part;
 use crate::mesh::Mesh;
@@ -38,18 +38,18 @@ pub(super) fn make_together<'a>(
         None => placed_object.parts.clone(),
     };
     let granted = placed_object.granted_together();
-    let limits = seen_at_all_steps(&mut plans, &before);
-    let limits: Vec<Limits> = limits.into_iter().map(|(_, limits)| limits).collect();
-    let parts = refined_for_all(&plans, &before, &limits, wanted, granted);
-    let mut seen = seen_at_all_steps(&mut plans, &parts);
+    let drafts = at_all_steps(&mut plans, &before);
+    let parts = refined_for_all(&plans, &before, &drafts, wanted, granted);
+    let after = at_all_steps(&mut plans, &parts);
     let mut surfaces = vec![];
-    for (index, ((name, part), (_, before))) in parts.iter().zip(&before).enumerate() {
-        let steps = plans.iter().zip(&mut seen).map(|(plan, (seen, limits))| {
-            let (part, before) = (standing_in(plan, part), standing_in(plan, before));
-            let (mesh, seen) = (part.mesh(), seen[index].clone());
+    for (index, (name, _)) in parts.iter().enumerate() {
+        let steps = plans.iter().zip(drafts.iter().zip(&after));
+        let steps = steps.map(|(plan, (draft, after))| {
+            let (_, part) = &after.stand_ins[index];
+            let (mesh, seen, limits) = (part.mesh(), after.seen[index].clone(), &after.limits);
             let tolerance = &plan.tolerance;
             let observer = tolerance.view.observer_rest();
-            let before = before.mesh();
+            let before = draft.stand_ins[index].1.mesh();
             let minimum = survey(before, observer, f64::INFINITY, &limits.whole);
             let measured = Measured {
                 gap: largest_gap(mesh, observer),
@@ -65,7 +65,7 @@ pub(super) fn make_together<'a>(
                 certificate: certificate(tolerance, limits, mesh, &seen, around, measured),
                 around: around.unwrap_or_default(),
                 seen,
-                part: Cow::Owned(part),
+                part: Cow::Owned(part.clone()),
             }
         });
         surfaces.push(steps.collect());
@@ -86,20 +86,21 @@ fn share_finest_shape(plans: &mut [Plan<'_>]) {
     }
 }
 
-/// What stands for a part at rest at the step of a plan.
-fn standing_in(plan: &Plan<'_>, part: &Part) -> Part {
-    match plan.shown.rest_to_stand_in() {
-        Some(to_stand_in) => part.clone().transformed(&to_stand_in),
-        None => part.clone(),
-    }
+/// The parts of an object at one step.
+struct AtStep {
+    /// What stands for them, each with its name in files.
+    stand_ins: Vec<(String, Part)>,
+    /// In the observer's frame.
+    seen: Vec<MappedMesh>,
+    limits: Limits,
 }
 
-/// What stands for all parts.
-fn all_standing_in(plan: &Plan<'_>, parts: &[(String, Part)]) -> Vec<(String, Part)> {
-    let parts = parts.iter();
-    parts
-        .map(|(name, part)| (name.clone(), standing_in(plan, part)))
-        .collect()
+/// What stands for parts at rest at the step of a plan.
+fn standing_in(plan: &Plan<'_>, parts: &[(String, Part)]) -> Vec<(String, Part)> {
+    match plan.shown.rest_to_stand_in() {
+        Some(to_stand_in) => stretched(parts, &to_stand_in),
+        None => parts.to_vec(),
+    }
 }
 
 /// The mesh at rest of a refined stand-in. The vertices of `before`, the mesh at rest that has been refined, stay as they
@@ -125,12 +126,12 @@ fn back_at_rest(plan: &Plan<'_>, before: &Mesh, refined: Mesh) -> Mesh {
 fn refined_for_all(
     plans: &[Plan<'_>],
     before: &[(String, Part)],
-    limits: &[Limits],
+    drafts: &[AtStep],
     wanted: SurfaceOptions,
     granted: u64,
 ) -> Vec<(String, Part)> {
     let mut parts = before.to_vec();
-    for (step, (plan, limits)) in plans.iter().zip(limits).enumerate() {
+    for (step, (plan, draft)) in plans.iter().zip(drafts).enumerate() {
         if !plan.refines(wanted) {
             continue;
         }
@@ -141,9 +142,9 @@ fn refined_for_all(
             .map(|plan| plan.granted as f64 + 1.0)
             .collect();
         let share = shares(granted.saturating_sub(used), &weights)[0];
-        let standing_in = all_standing_in(plan, &parts);
+        let standing_in = standing_in(plan, &parts);
         let meshes: Vec<&Mesh> = standing_in.iter().map(|(_, part)| part.mesh()).collect();
-        let refined = refine_parts(plan, &meshes, limits, used.saturating_add(share));
+        let refined = refine_parts(plan, &meshes, &draft.limits, used.saturating_add(share));
         for ((_, part), refined) in parts.iter_mut().zip(refined) {
             *part = part.with_mesh(back_at_rest(plan, part.mesh(), refined.mesh));
         }
@@ -151,21 +152,25 @@ fn refined_for_all(
     parts
 }
 
-/// For each step the parts in the observer's frame and their limits, with one offset in a file for all steps.
-fn seen_at_all_steps(
-    plans: &mut [Plan<'_>],
-    parts: &[(String, Part)],
-) -> Vec<(Vec<MappedMesh>, Limits)> {
-    let seen: Vec<Vec<MappedMesh>> = plans
+/// The parts at each step, with one offset in a file for all steps.
+fn at_all_steps(plans: &mut [Plan<'_>], parts: &[(String, Part)]) -> Vec<AtStep> {
+    let shown: Vec<_> = plans
         .iter()
-        .map(|plan| seen_parts(plan.view(), &all_standing_in(plan, parts)))
+        .map(|plan| {
+            let stand_ins = standing_in(plan, parts);
+            let seen = seen_parts(plan.view(), &stand_ins);
+            (stand_ins, seen)
+        })
         .collect();
-    let box_of_all_steps = bounds(seen.iter().flatten());
-    let limits = plans.iter_mut().zip(&seen).map(|(plan, seen)| {
+    let box_of_all_steps = bounds(shown.iter().flat_map(|(_, seen)| seen));
+    let steps = plans.iter_mut().zip(shown);
+    let steps = steps.map(|(plan, (stand_ins, seen))| {
         plan.tolerance.box_of_all_steps = box_of_all_steps;
-        plan.tolerance
-            .limits(&all_standing_in(plan, parts), seen, 1.0)
+        AtStep {
+            limits: plan.tolerance.limits(&stand_ins, &seen, 1.0),
+            stand_ins,
+            seen,
+        }
     });
-    let limits: Vec<Limits> = limits.collect();
-    seen.into_iter().zip(limits).collect()
+    steps.collect()
 }

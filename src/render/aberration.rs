@@ -11,14 +11,8 @@ use crate::spacetime::{Moment, MovedLight, ViewModel, WorldLine, unit};
 ///
 /// Light seen now in the unit direction `s` at the distance `l` comes from the event `l (-1, s)` of the
 /// observer's frame, for some `l`: a straight line through the observation, in every frame. In the rest frame, in
-/// which the observer moves along `n` with rapidity `eta`, and with `theta` between `n` and `s`, it is
-/// `l (-r, v)` where
-///
-/// ```text
-/// r = sin^2(theta/2) e^eta + cos^2(theta/2) e^-eta        v = s_across + n (cos^2(theta/2) e^-eta - sin^2(theta/2) e^eta)
-/// sin(theta/2) = |s - n| / 2                              cos(theta/2) = |s + n| / 2
-/// ```
-///
+/// which the observer moves along `n`, it is `l (-r, v)`, with the frequency `r` and the wave vector `v` of
+/// [`MovedLight`] for the direction `s`,
 /// and `|v| = r`: nothing cancels at any speed. So a ray in the rest frame is followed along `v`, and where it
 /// hits after the distance `r l`, the thing is seen at the distance `l`: of several objects in
 /// different motion the one with the smallest `l` hides the others. `1 / r` is the Doppler factor.

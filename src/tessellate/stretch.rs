@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::light_cone::View;
+use crate::light_cone::{View, facet_ball};
 
 /// Cosines that differ by more belong to stretches whose difference no rounding hides, at any rapidity above [`SLOW`].
 const TELLING: f64 = 1e-6;
@@ -37,7 +37,7 @@ pub(crate) fn largest_stretch(
     // cos(a + b) with a the angle to the centre and b that under which the radius is seen; -1 stands for all beyond 180
     // degrees, and for what is not a number.
     let far_side = |index: usize| {
-        let (middle, radius) = ball(corners(index));
+        let (middle, radius) = facet_ball(corners(index));
         let offset = middle - observer;
         let distance = offset.length();
         let (cosine, sine) = (backward.dot(offset) / distance, radius / distance);
@@ -54,14 +54,4 @@ pub(crate) fn largest_stretch(
         .into_par_iter()
         .filter(|&index| far_sides[index] <= farthest + TELLING);
     near.map(exact).reduce(|| 0.0, f64::max)
-}
-
-/// Centre and radius of the ball of [`local_stretch`], except of stand-ins.
-fn ball([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
-    let middle = (a + b + c) / 3.0;
-    let reach = [a, b, c]
-        .map(|corner| corner.distance(middle))
-        .into_iter()
-        .fold(0.0, f64::max);
-    (middle, 2.0 * reach)
 }

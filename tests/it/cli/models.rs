@@ -143,6 +143,27 @@ fn files_have_models_side_by_side() {
         .success();
 }
 
+/// The study of accuracy measures the error of the model that is shown.
+#[test]
+fn cost_measures_what_is_shown() {
+    let workplace = workplace();
+    for model in MODELS {
+        let line = format!(
+            "cost plain.json --model {model} --only meshes --tolerances 1e-2,1e-3 --repeats 1 --json cost.json"
+        );
+        workplace.run(&line).success();
+        let study = workplace.read_json("cost.json");
+        let rows = study["meshes"].as_array().unwrap();
+        assert_eq!(rows.len(), 2);
+        for row in rows {
+            let number = |key: &str| row["made"][key].as_f64().unwrap();
+            assert!(number("error") <= number("bound"), "{model}: {row}");
+            let bends = matches!(model, "seen" | "delayed");
+            assert_eq!(number("triangles") > 24.0, bends, "{model}: {row}");
+        }
+    }
+}
+
 #[test]
 fn pictures_have_models_side_by_side() {
     let workplace = workplace();

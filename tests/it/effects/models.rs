@@ -235,6 +235,37 @@ fn a_morph_is_within_its_certificates_under_every_model() {
     }
 }
 
+/// Predictions and budgets are about what is shown, not about the object: linear models need none more, and no model gets
+/// more than it may have.
+#[test]
+fn predictions_and_budgets_hold_under_every_model() {
+    for model in ViewModel::ALL {
+        for (shape, most) in [
+            (Shape::cuboid([1.0, 2.0, 3.0]).unwrap(), 100),
+            (sphere(), 700),
+        ] {
+            let placed = placed(shape, model, 0.9, &[-1.0, 0.0, 1.0]);
+            let options = SurfaceOptions::default();
+            let count = |placed: &PlacedScene| -> usize {
+                let steps = (0..3).flat_map(|step| placed.photosurfaces(step, options).unwrap());
+                steps.map(|surface| surface.facts.triangles).sum()
+            };
+            let made = count(&placed) as f64;
+            let predicted = placed.predictions(options)[0];
+            assert!(predicted.reachable, "{model}");
+            assert!(
+                (predicted.triangles / made - 1.0).abs() < 0.4,
+                "{model}: {} {made}",
+                predicted.triangles
+            );
+            let (fitted, loosening) = placed.within_budget(options, most);
+            let fitted = count(&fitted);
+            assert!(fitted as u64 <= most, "{model}: {fitted}");
+            assert_eq!(loosening[0] > 1.0, made > most as f64, "{model}: {made}");
+        }
+    }
+}
+
 /// The places at rest of the vertices of a photosurface at 0.9 c, by the inverse of the textbook formulas.
 fn rest_of(model: ViewModel, event: Event, surface: &Photosurface) -> Vec<DVec3> {
     let (n, beta) = (DIRECTION.normalize(), 0.9_f64);

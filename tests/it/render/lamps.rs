@@ -101,6 +101,21 @@ fn direction_at_rest(motion: Velocity, seen: DVec3) -> DVec3 {
     along * angle.cos() + across.normalize() * angle.sin()
 }
 
+/// Each pixel in which the floor is seen from `eye`: with the direction, for one at rest with the floor, and the place.
+fn floor_places(
+    camera: &Camera,
+    motion: Velocity,
+    eye: DVec3,
+) -> impl Iterator<Item = (u32, u32, DVec3, DVec3)> + use<'_> {
+    pixels(camera).filter_map(move |(x, y, seen)| {
+        let way = direction_at_rest(motion, seen);
+        let distance = -eye.y / way.y;
+        let place = eye + way * distance;
+        let is_floor = distance > 0.0 && place.abs().max_element() <= 150.0;
+        is_floor.then_some((x, y, way, place))
+    })
+}
+
 /// A floor whose upper side is `y = 0`, and what else there is.
 fn above_a_floor(observer: Value, lamps: Value, mut others: Vec<Value>) -> Value {
     others.push(
@@ -128,13 +143,8 @@ fn a_flash_is_seen_as_the_rings_of_its_closed_form() {
             let camera = camera(160, 120, 100.0, DVec3::new(0.0, -1.0, -0.2));
             let picture = take(&placed, &at_rest(&placed), &camera);
             let (mut bright, mut wrong) = (0, 0);
-            for (x, y, seen) in pixels(&camera) {
-                let way = direction_at_rest(motion, seen);
-                let distance = -eye.y / way.y;
-                let place = eye + way * distance;
-                if !(distance > 0.0) || place.abs().max_element() > 150.0 {
-                    continue;
-                }
+            for (x, y, _, place) in floor_places(&camera, motion, eye) {
+                let distance = place.distance(eye);
                 let left = time - distance - place.distance(lamp);
                 let expected = left >= 0.0 && left < duration;
                 let margin = left.abs().min((left - duration).abs());
@@ -164,13 +174,7 @@ fn lamps_at_rest_light_as_at_rest_whatever_the_observer_does() {
         let camera = camera(120, 90, 90.0, DVec3::new(0.2, -1.0, -0.6));
         let picture = take(&placed, &at_rest(&placed), &camera);
         let mut seen_places = 0;
-        for (x, y, seen) in pixels(&camera) {
-            let way = direction_at_rest(motion, seen);
-            let distance = -eye.y / way.y;
-            let place = eye + way * distance;
-            if !(distance > 0.0) || place.abs().max_element() > 150.0 {
-                continue;
-            }
+        for (x, y, way, place) in floor_places(&camera, motion, eye) {
             let to_lamp = lamp - place;
             let point = 2.0 * to_lamp.y / to_lamp.length().powi(3);
             let matte = point + 0.1 * 2.0 / 5f64.sqrt() + 0.05;
