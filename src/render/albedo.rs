@@ -28,14 +28,11 @@ const TABLE: [[[f64; 2]; 11]; 10] = [
 pub(super) fn albedo(roughness: f64, eye_cosine: f64) -> [f64; 2] {
     let (row, down) = place(10.0 * roughness - 1.0, TABLE.len());
     let (column, right) = place(10.0 * eye_cosine.sqrt(), TABLE[0].len());
-    let between = |row: usize, part: usize| {
-        let [left, next] = [column, column + 1].map(|column| TABLE[row][column][part]);
-        left + (next - left) * right
-    };
-    [0, 1].map(|part| {
-        let [above, below] = [row, row + 1].map(|row| between(row, part));
-        above + (below - above) * down
-    })
+    let mix =
+        |[a, b]: [f64; 2], [c, d]: [f64; 2], part: f64| [a + (c - a) * part, b + (d - b) * part];
+    let [above, below] =
+        [&TABLE[row], &TABLE[row + 1]].map(|row| mix(row[column], row[column + 1], right));
+    mix(above, below, down)
 }
 
 /// The first of two neighbours among `count` numbers, and how far on from it; beyond the ends, the end.
