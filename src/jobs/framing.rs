@@ -48,7 +48,8 @@ pub enum Aim {
     /// An observer who flies, or whose axes are turned, looks along its own -z axis; all others as with [`Aim::Middle`].
     #[default]
     Usual,
-    /// The middle of all objects; for the observer, that of the part of the sky that they cover.
+    /// The middle of all objects; for the observer, that of the part of the sky that they cover, or the direction of motion
+    /// in pictures of the whole sky that do not track.
     Middle,
     /// A direction, as a vector of any length.
     Look(DVec3),

@@ -90,7 +90,7 @@ impl ObserverFrame {
             let aim = match (aimed, settings.follow) {
                 (Some(look), _) => held(look, DVec3::Y),
                 (None, Follow::Track) => Direction::Tracked(Flat::Perspective),
-                (None, _) => held(middle_of_sky(&all), DVec3::Y),
+                (None, _) => held(heading, DVec3::Y),
             };
             return frame(Projection::FullSky, aim, false).checked(settings);
         }
