@@ -14,7 +14,8 @@ use photosurface::{DQuat, DVec3, Observer, Scene, Velocity};
 /// What to look at.
 #[derive(Debug, Args)]
 pub(super) struct InputArgs {
-    /// A scene file (.json), a mesh (.glb, .gltf, .obj), or - to read a scene (JSON) or a GLB from stdin
+    /// A scene file (.json), a mesh (.glb, .gltf, .obj, .ply, .stl, .off), or - to read a scene (JSON), a GLB, PLY, STL or OFF
+    /// from stdin
     /// [default: the built-in scene "sphere"]
     #[arg(value_name = "SCENE|MESH")]
     pub(super) input: Option<PathBuf>,

@@ -8,7 +8,7 @@ use thiserror::Error;
 use super::{FileFindings, LoadError};
 use crate::material::Model;
 use crate::pipeline::{PlacedScene, PlacedSceneError};
-use crate::read::{Access, ReadError, read_whole};
+use crate::read::{Access, EXPECTED_MODEL, ReadError, is_model_extension, read_whole};
 use crate::scene::{InvalidScene, Object, Observer, Place, PlaceError, Scene, SceneError, Source};
 
 /// Limit on the bytes of a scene's text, enough for some hundred thousand objects.
@@ -39,7 +39,7 @@ pub enum SceneTextError {
 #[non_exhaustive]
 pub enum InputError {
     /// The extension is neither that of a scene nor that of a mesh.
-    #[error("{}: unknown extension, expected a scene (.json) or a mesh (.glb, .gltf, .obj)", .0.display())]
+    #[error("{}: unknown extension, expected a scene (.json) or a mesh: {EXPECTED_MODEL}", .0.display())]
     UnknownExtension(PathBuf),
     /// The file cannot be read.
     #[error("{}", file.display())]
@@ -77,8 +77,8 @@ pub enum InputError {
 }
 
 impl PlacedScene {
-    /// Reads a scene (.json) with the models of its objects, or a mesh by itself (.glb, .gltf, .obj); returns the
-    /// findings about each file as well. A file that another file names is read only if [`Access::default`] allows it.
+    /// Reads a scene (.json) with the models of its objects, or a mesh by itself (.glb, .gltf, .obj, .ply, .stl,
+    /// .off); returns the findings about each file as well. A file that another file names is read only if [`Access::default`] allows it.
     ///
     /// A mesh by itself is at rest at the origin. The observer is at rest, two diagonals of the mesh's bounds in front
     /// of its centre, and looks along -z; [`Scene::with_observer`] and [`PlacedScene::new`] make a scene with another
@@ -118,10 +118,7 @@ impl Access {
             })?;
             return Ok((PlacedScene::new(scene, models)?, findings));
         }
-        if !["glb", "gltf", "obj"]
-            .iter()
-            .any(|known| extension == *known)
-        {
+        if !is_model_extension(&extension.to_string_lossy()) {
             return Err(InputError::UnknownExtension(path.to_owned()));
         }
         let (model, findings) = self.read_model(path).map_err(wrong)?;

@@ -90,6 +90,23 @@ pub enum Note {
         /// How many.
         count: usize,
     },
+    /// Triangles that have no area since two of their corners are one vertex.
+    EqualCorners {
+        /// How many.
+        count: usize,
+    },
+    /// Vertices that no triangle uses.
+    UnusedVertices {
+        /// How many.
+        count: usize,
+    },
+    /// Normals of facets that contradict the order of the corners, which decides.
+    FacetNormals {
+        /// Which part.
+        mesh: String,
+        /// How many facets.
+        count: usize,
+    },
     /// Indices that do not make up a triangle.
     LeftOver {
         /// Which primitive.
@@ -111,7 +128,7 @@ pub enum Note {
         /// How many vertices.
         count: usize,
     },
-    /// Colours of vertices in an OBJ file, where nobody says what they mean.
+    /// Colours of vertices in a file of a format that does not say what they mean.
     ColorsFromSrgb,
     /// A mesh that has other forms.
     Morph {
@@ -304,6 +321,21 @@ impl fmt::Display for Note {
             Self::EmptyFaces { count } => {
                 let those = plural(*count, "face");
                 write!(f, "{those} of fewer than three corners skipped")
+            }
+            Self::EqualCorners { count } => {
+                let those = plural(*count, "triangle");
+                write!(f, "{those} with two corners at one vertex skipped")
+            }
+            Self::UnusedVertices { count } => {
+                let those = plural(*count, "vertex");
+                write!(f, "{those} of no triangle skipped")
+            }
+            Self::FacetNormals { mesh, count } => {
+                let those = plural(*count, "facet normal");
+                write!(
+                    f,
+                    "{mesh}: {those} against the order of the corners ignored"
+                )
             }
             Self::LeftOver { place, count } => {
                 let those = plural(*count, "left-over index");

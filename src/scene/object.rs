@@ -44,7 +44,7 @@ pub struct Object {
 /// Where the geometry of an object comes from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
-    /// A glTF, GLB or OBJ file.
+    /// A glTF, GLB, OBJ, PLY, STL or OFF file.
     File(PathBuf),
     /// A shape that the program makes itself.
     Shape(Shape, Appearance),
@@ -99,7 +99,7 @@ struct ObjectFields {
     /// Names the object in the output; unique in the scene.
     #[schemars(length(min = 1))]
     name: String,
-    /// A glTF, GLB or OBJ file, relative to the scene file. Either this or `shape`.
+    /// A glTF, GLB, OBJ, PLY, STL or OFF file, relative to the scene file. Either this or `shape`.
     #[serde(default, deserialize_with = "forms::file")]
     #[schemars(with = "String", length(min = 1))]
     file: Option<PathBuf>,
