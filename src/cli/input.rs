@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, bail, ensure};
 use photosurface::jobs::{MAX_SCENE_BYTES, scene_from_bytes, stand_off};
+use photosurface::material::Normals;
 use photosurface::read::{
     Access, EXPECTED_MODEL, Findings, ReadError, is_model_extension, is_model_of_one_file,
-    read_whole,
+    read_whole, with_normals,
 };
 use photosurface::scene::BUILT_IN_SCENES;
 use photosurface::{Model, Object, Observer, Scene, Source, Textures};
@@ -42,6 +43,7 @@ pub(super) struct Input {
 /// What is read, for whom, and how much is said about it.
 struct Reading<'a> {
     access: Access,
+    normals: Option<Normals>,
     observer: &'a ObserverArgs,
     verbosity: Verbosity,
 }
@@ -55,6 +57,7 @@ impl Input {
     ) -> anyhow::Result<Self> {
         let reading = Reading {
             access: input.access(),
+            normals: input.normals,
             observer,
             verbosity,
         };
@@ -114,7 +117,10 @@ impl Reading<'_> {
     }
 
     fn scene(&self, name: &str, scene: Scene, path: Option<&Path>) -> anyhow::Result<Input> {
-        let scene = self.observer.apply(scene)?;
+        let mut scene = self.observer.apply(scene)?;
+        if let Some(normals) = self.normals {
+            scene = scene.with_normals(normals);
+        }
         let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
         let place = path.map_or(name.to_string(), |path| path.display().to_string());
         let read = self.access.load_models(&scene, directory);
@@ -143,10 +149,12 @@ impl Reading<'_> {
     fn mesh(
         &self,
         name: &str,
-        (model, findings): (Model, Findings),
+        read: (Model, Findings),
         path: Option<&Path>,
     ) -> anyhow::Result<Input> {
         let place = path.map_or("stdin".into(), |path| path.display().to_string());
+        let read = with_normals(read, self.normals.unwrap_or_default());
+        let (model, findings) = read.with_context(|| place.clone())?;
         for note in findings.lines() {
             self.verbosity.note(format_args!("{place}: {note}"));
         }

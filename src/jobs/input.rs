@@ -6,9 +6,11 @@ use glam::DVec3;
 use thiserror::Error;
 
 use super::{FileFindings, LoadError};
-use crate::material::Model;
+use crate::material::{Model, Normals};
 use crate::pipeline::{PlacedScene, PlacedSceneError};
-use crate::read::{Access, EXPECTED_MODEL, ReadError, is_model_extension, read_whole};
+use crate::read::{
+    Access, EXPECTED_MODEL, ReadError, is_model_extension, read_whole, with_normals,
+};
 use crate::scene::{InvalidScene, Object, Observer, Place, PlaceError, Scene, SceneError, Source};
 
 /// Limit on the bytes of a scene's text, enough for some hundred thousand objects.
@@ -121,7 +123,9 @@ impl Access {
         if !is_model_extension(&extension.to_string_lossy()) {
             return Err(InputError::UnknownExtension(path.to_owned()));
         }
-        let (model, findings) = self.read_model(path).map_err(wrong)?;
+        let read = self.read_model(path);
+        let read = read.and_then(|read| with_normals(read, Normals::Source));
+        let (model, findings) = read.map_err(wrong)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let object = Object::new(name, Source::File(path.to_owned()));
         let scene = Scene::new(Observer::default(), vec![object])?;

@@ -130,6 +130,15 @@ pub enum Note {
     },
     /// Colours of vertices in a file of a format that does not say what they mean.
     ColorsFromSrgb,
+    /// Parts without normals that are shaded flat; bytes of a step in a glTF file without refinement.
+    FlatForWantOfNormals {
+        /// As they are.
+        flat: u64,
+        /// With smooth normals, at least.
+        smooth: u64,
+        /// Without normals.
+        none: u64,
+    },
     /// A mesh that has other forms.
     Morph {
         /// Which mesh.
@@ -352,6 +361,14 @@ impl fmt::Display for Note {
                 write!(f, "{mesh}: {those} outside 0 to 1 clamped")
             }
             Self::ColorsFromSrgb => write!(f, "vertex colours: taken as sRGB, made linear"),
+            Self::FlatForWantOfNormals { flat, smooth, none } => {
+                let [flat, smooth, none] = [flat, smooth, none].map(|&bytes| bytes as f64 / 1e6);
+                write!(
+                    f,
+                    "no normals: facets are shaded flat, with three vertices each, {flat:.1} MB a step; shared vertices need \
+                     about {smooth:.1} MB with --normals smooth, {none:.1} MB with --normals none"
+                )
+            }
             Self::Morph { mesh, weights } if weights.iter().all(|&weight| weight == 0.0) => {
                 let targets = plural(weights.len(), "morph target");
                 write!(f, "{mesh}: {targets} left at weight 0")
