@@ -21,6 +21,7 @@ mod models;
 mod output;
 mod render;
 mod schema;
+mod speeds;
 mod status;
 mod tables;
 mod wording;

@@ -116,3 +116,32 @@ def test_files_of_pyvista(kind, binary, export, tmp_path):
     # The outside stays outside.
     volume = numpy.linalg.det(found).sum() / 6
     assert abs(volume - mesh.volume) < 1e-4 * mesh.volume
+
+
+@pytest.mark.parametrize("kind", ["ply", "stl", "off"])
+@pytest.mark.parametrize("normals", ["smooth", "smooth:180", "flat", "none"])
+def test_normals_that_are_asked_for(kind, normals, export, tmp_path):
+    """A box has right angles; trimesh, which averages by angle too, is asked for the normals of a ball."""
+    for mesh in (trimesh.creation.box((1, 2, 3)), trimesh.creation.icosphere(2)):
+        path = tmp_path / f"{len(mesh.faces)}.{kind}"
+        mesh.export(path, **({"vertex_normal": False} if kind == "ply" else {}))
+        flags = "--no-subdivide", "--beta", "0", "--observer", "0,0,0", "--normals", normals
+        out = export(path, *flags)
+        (node,) = glb.Gltf(out).nodes
+        check_facets(node, mesh)
+        is_box = len(mesh.faces) == 12
+        count = {"smooth": 24 if is_box else len(mesh.vertices), "flat": 3 * len(mesh.faces)}
+        assert len(node.positions) == count.get(normals, len(mesh.vertices))
+        assert ("NORMAL" in node.attributes) == (normals != "none")
+        if normals.startswith("smooth") and not is_box:
+            radial = node.world / numpy.linalg.norm(node.world, axis=1)[:, None]
+            found = node.attributes["NORMAL"]
+            assert (found * radial).sum(axis=1).min() > numpy.cos(0.02)
+            order = numpy.lexsort(node.world.round(5).T), numpy.lexsort(mesh.vertices.round(5).T)
+            assert abs(found[order[0]] - mesh.vertex_normals[order[1]]).max() < 1e-5
+        loaded = trimesh.load_scene(out, process=False)
+        assert sum(len(part.faces) for part in loaded.geometry.values()) == len(mesh.faces)
+        # The seen one has the same vertices, in a PLY too.
+        seen = trimesh.load(export(path, "--no-subdivide", "--beta", "0.9", "--normals", normals, to="out.ply"), process=False)
+        assert len(seen.vertices) == len(node.positions)
+        assert numpy.isfinite(seen.vertices).all()
