@@ -234,10 +234,9 @@ mod tests {
                 .map(|p| (*p + DVec3::ZERO).to_array().map(f64::to_bits)),
         );
         let count = places.iter().max().unwrap() + 1;
-        let smooth = soup(&sphere).with_smooth_normals(LIMIT).unwrap();
-        let bare = Mesh::new(smooth.positions().to_vec(), smooth.triangles().to_vec()).unwrap();
-        let again = bare.with_smooth_normals(LIMIT).unwrap();
-        assert_eq!(again, Mesh { ..again.clone() });
+        // Without texture coordinates, whose seams part vertices.
+        let bare = Mesh::new(sphere.positions().to_vec(), sphere.triangles().to_vec()).unwrap();
+        let again = soup(&bare).with_smooth_normals(LIMIT).unwrap();
         assert_eq!(again.positions().len(), count as usize);
         for (position, normal) in again.positions().iter().zip(again.normals().unwrap()) {
             let angle = normal.angle_between(*position);
