@@ -129,6 +129,11 @@ impl Reading<'_> {
     fn scene(&self, name: &str, scene: Scene, path: Option<&Path>) -> anyhow::Result<Input> {
         let mut scene = self.observer.apply(scene)?;
         if let Some(normals) = self.normals {
+            let is_file = |object: &Object| matches!(object.source, Source::File(_));
+            ensure!(
+                scene.objects().iter().any(is_file),
+                "--normals is for meshes from files, and no object of the scene comes from a file"
+            );
             scene = scene.with_normals(normals);
         }
         let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));

@@ -247,8 +247,20 @@ mod tests {
 
     #[test]
     fn a_cube_is_sharp_or_round_as_the_limit_says() {
-        let cube = Shape::cuboid([1.0, 2.0, 3.0]).unwrap().mesh().unwrap();
-        let cube = Mesh::new(cube.positions().to_vec(), cube.triangles().to_vec()).unwrap();
+        let sign = |i: u32, axis: u32| if i >> axis & 1 == 1 { 1.0 } else { -1.0 };
+        let corner = |i| DVec3::new(sign(i, 0), 2.0 * sign(i, 1), 3.0 * sign(i, 2));
+        let sides = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        let triangles = sides
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        let cube = Mesh::new((0..8).map(corner).collect(), triangles.collect()).unwrap();
         let count = |degrees: f64| {
             let smooth = soup(&cube)
                 .with_smooth_normals(degrees.to_radians())
