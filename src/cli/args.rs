@@ -18,7 +18,7 @@ use super::speeds::SpeedArgs;
 #[derive(Debug, Args)]
 pub(super) struct InputArgs {
     /// A scene file (.json), a mesh (.glb, .gltf, .obj, .ply, .stl, .off), or - to read a scene (JSON), a GLB, PLY, STL or OFF
-    /// from stdin
+    /// from stdin; coordinates of a PLY, STL or OFF are taken as they stand, y up
     /// [default: the built-in scene "sphere"]
     #[arg(value_name = "SCENE|MESH")]
     pub(super) input: Option<PathBuf>,
