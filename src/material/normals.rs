@@ -126,10 +126,7 @@ impl Model {
             let sets = source.texture_coordinates().len() as u64;
             let colors = u64::from(source.colors().is_some());
             let of_vertex = 12 + 8 * sets + 4 * colors;
-            let with = |vertices: u64, of_vertex: u64| {
-                let index = if vertices > u64::from(u16::MAX) { 4 } else { 2 };
-                vertices * of_vertex + corners * index
-            };
+            let with = |vertices: u64, of_vertex: u64| vertices * of_vertex + corners * 4;
             bytes[0] += with(corners, of_vertex + 12);
             bytes[1] += with(vertices, of_vertex + 12);
             bytes[2] += with(vertices, of_vertex);
