@@ -82,6 +82,7 @@ mod cli {
     mod flags;
     mod flight;
     mod models;
+    mod normals;
     mod render;
 }
 

@@ -221,9 +221,11 @@ fn missing_and_unknown_files_are_told_by_name() {
     workplace
         .run("export nosuch.glb")
         .error(&["nosuch.glb", "No such file"]);
-    workplace
-        .run("export ball.stl")
-        .error(&["ball.stl", "unknown extension", ".glb, .gltf, .obj"]);
+    workplace.run("export ball.fbx").error(&[
+        "ball.fbx",
+        "unknown extension",
+        ".glb, .gltf, .obj, .ply, .stl or .off; Blender or MeshLab",
+    ]);
     workplace
         .run("export ball.json -o out.stl")
         .error(&["out.stl", ".glb, .gltf or .ply"]);
