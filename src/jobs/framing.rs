@@ -3,10 +3,8 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use super::observer_frame::ObserverFrame;
-use super::seen::{seen_vertices, sky_of};
-use crate::pipeline::{PlacedScene, PlacedSceneError};
-use crate::render::{Camera, CameraError, PictureSize};
+use crate::pipeline::PlacedSceneError;
+use crate::render::{CameraError, PictureSize};
 use crate::scene::Observer;
 
 /// Customary vertical field of view of the observer's pictures, in degrees.
@@ -129,21 +127,6 @@ impl CameraSettings {
         }
     }
 
-    /// The observer's camera for each step of a scene, in the order of the steps, as in a series of pictures; all have the
-    /// same field of view.
-    ///
-    /// # Errors
-    ///
-    /// An error is returned if the field of view is out of range or the aim gives no direction.
-    pub fn observer_cameras(&self, placed: &PlacedScene) -> Result<Vec<Camera>, FramingError> {
-        let steps = placed.scene().steps().len();
-        let skies = (0..steps).map(|step| Ok(sky_of(&seen_vertices(placed, step)?)));
-        let skies: Vec<_> = skies.collect::<Result<_, FramingError>>()?;
-        let here = self.for_observer(placed.scene().observer(), false);
-        let frame = ObserverFrame::new(&here, &skies, heading(placed))?;
-        skies.iter().map(|sky| frame.camera(sky)).collect()
-    }
-
     /// The settings of the observer's camera, without anything that is "usual" but the projection.
     pub(super) fn for_observer(&self, observer: &Observer, is_sheet: bool) -> Self {
         let mut here = *self;
@@ -167,11 +150,4 @@ impl CameraSettings {
         }
         here
     }
-}
-
-/// The direction in which the observer moves at the first step, in its own axes; -z for one at rest in the scene.
-pub(super) fn heading(placed: &PlacedScene) -> DVec3 {
-    let moment = placed.scene().moment(0);
-    let motion = moment.map(|moment| moment.heading_own());
-    motion.flatten().unwrap_or(DVec3::NEG_Z)
 }

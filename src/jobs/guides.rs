@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use glam::{DAffine3, DVec2, DVec3};
 
+use super::extent::round_below;
 use super::outside_camera::OutsideCamera;
 use crate::light_cone::View;
 use crate::mesh::Mesh;
@@ -213,39 +214,9 @@ pub(super) fn contrasting(background: Color) -> Color {
     })
 }
 
-/// The largest number up to `limit` that is 1, 2 or 5 times a power of ten.
-pub(super) fn round_below(limit: f64) -> f64 {
-    let exponent = limit.log10().floor();
-    let power = 10f64.powi(exponent.abs() as i32);
-    let round = |digit: f64| {
-        if exponent < 0.0 {
-            digit / power
-        } else {
-            digit * power
-        }
-    };
-    let fitting = [5.0, 2.0].map(round).into_iter().find(|&n| n <= limit);
-    fitting.unwrap_or(round(1.0))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn bars_have_round_lengths() {
-        for (limit, expected) in [
-            (1.0, 1.0),
-            (1.99, 1.0),
-            (4.9, 2.0),
-            (7.0, 5.0),
-            (0.03, 0.02),
-            (99.0, 50.0),
-            (0.5, 0.5),
-        ] {
-            assert_eq!(round_below(limit), expected);
-        }
-    }
 
     #[test]
     fn lines_are_told_from_the_background() {

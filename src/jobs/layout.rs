@@ -3,7 +3,9 @@
 use std::num::NonZeroUsize;
 use std::ops::Range;
 
-use super::picture_settings::PictureView;
+use super::grid::grid_size;
+use super::picture_settings::{PictureSettings, PictureView};
+use crate::render::{CameraError, PictureSize};
 
 /// The scenes that are shown beside each other: so many rows of so many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,8 +25,60 @@ pub(super) struct Cell {
 /// The cells of a picture, row by row.
 pub(super) type Page = Vec<Vec<Cell>>;
 
+impl PictureSettings {
+    /// The size, in pixels, of the pictures of a scene with `steps` steps: the size of the camera's picture or of the
+    /// whole sheet.
+    ///
+    /// # Errors
+    ///
+    /// An error is returned if a sheet has more pixels along one side than a picture may have.
+    pub fn picture_size(&self, steps: usize) -> Result<PictureSize, CameraError> {
+        self.side_by_side_size(1, 1, steps)
+    }
+
+    /// As [`PictureSettings::picture_size`], of so many rows and columns of scenes beside each other.
+    ///
+    /// # Errors
+    ///
+    /// As [`PictureSettings::picture_size`].
+    pub fn side_by_side_size(
+        &self,
+        rows: usize,
+        columns: usize,
+        steps: usize,
+    ) -> Result<PictureSize, CameraError> {
+        let pages = self.pages(Shape { rows, columns }, steps);
+        pages
+            .first()
+            .map_or(Ok(self.camera.size), |page| self.page_size(page))
+    }
+
+    /// The pictures of scenes with so many steps.
+    pub(super) fn pages(&self, scenes: Shape, steps: usize) -> Vec<Page> {
+        pages(self.view, scenes, steps, self.columns)
+    }
+
+    /// The size, in pixels, of a picture of these cells.
+    pub(super) fn page_size(&self, page: &Page) -> Result<PictureSize, CameraError> {
+        let columns = page.iter().map(Vec::len).max().unwrap_or(1);
+        grid_size(
+            self.camera.size,
+            columns,
+            page.len() * self.views_of_a_cell(),
+        )
+    }
+
+    /// How many views stand above each other for a scene at a step.
+    pub(super) fn views_of_a_cell(&self) -> usize {
+        match self.view {
+            PictureView::Sheet { .. } => 2,
+            _ => 1,
+        }
+    }
+}
+
 /// The pictures of scenes with so many steps. `columns` is how many steps a sheet of single scenes has beside each other.
-pub(super) fn pages(
+fn pages(
     view: PictureView,
     Shape { rows, columns }: Shape,
     steps: usize,

@@ -54,10 +54,11 @@ pub use framing::{
 pub use guides::Guides;
 pub use input::{InputError, MAX_SCENE_BYTES, SceneTextError, scene_from_bytes, text_of};
 pub use load::{FileFindings, LoadError, load_models};
+pub use observer_frame::FrameFacts;
 pub use passage::{PassageError, fly_by, passage, passing_observer};
 pub use picture_settings::{PictureMethod, PictureSettings, PictureView};
 pub use pictures::{Variant, render, render_side_by_side, render_to_files};
 pub use progress::{Cancelled, Progress};
-pub use rendered::{EmptyView, FrameFacts, RenderError, Rendered, ViewCost};
+pub use rendered::{EmptyView, RenderError, Rendered, ViewCost};
 pub use tally::Tally;
 pub use vertex_colors::LightNote;

@@ -9,7 +9,8 @@ use super::framing::{
     Aim, CameraSettings, FRAME, FieldOfView, Follow, FramingError, OBSERVER_FOV_DEG,
     PictureProjection,
 };
-use super::rendered::FrameFacts;
+use super::seen::{seen_vertices, sky_of};
+use crate::pipeline::PlacedScene;
 use crate::render::{Camera, CameraError, PictureSize, Projection};
 
 /// The smallest field of view that is found to fit, in degrees.
@@ -29,6 +30,19 @@ pub(super) struct ObserverFrame {
     projection: Projection,
     aim: Direction,
     is_cut: bool,
+}
+
+/// What the observer's views show of the sky.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameFacts {
+    /// How directions are laid out, with the field of view.
+    pub projection: Projection,
+    /// The angle, in degrees, between the left and right edges of a picture, or between the upper and lower ones if that is
+    /// more.
+    pub widest_deg: f64,
+    /// Whether everything was to be in the picture, and is not: no picture is wide enough. The camera looks in the direction
+    /// of motion then.
+    pub is_cut: bool,
 }
 
 /// Where the cameras look.
@@ -56,6 +70,21 @@ struct Fit {
 }
 
 impl CameraSettings {
+    /// The observer's camera for each step of a scene, in the order of the steps, as in a series of pictures; all have the
+    /// same field of view.
+    ///
+    /// # Errors
+    ///
+    /// An error is returned if the field of view is out of range or the aim gives no direction.
+    pub fn observer_cameras(&self, placed: &PlacedScene) -> Result<Vec<Camera>, FramingError> {
+        let steps = placed.scene().steps().len();
+        let skies = (0..steps).map(|step| Ok(sky_of(&seen_vertices(placed, step)?)));
+        let skies: Vec<_> = skies.collect::<Result<_, FramingError>>()?;
+        let here = self.for_observer(placed.scene().observer(), false);
+        let frame = ObserverFrame::new(&here, &skies, heading(placed))?;
+        skies.iter().map(|sky| frame.camera(sky)).collect()
+    }
+
     /// The field of view that is asked for, or the customary one, in degrees.
     fn fov_deg(&self) -> f64 {
         match self.field_of_view {
@@ -185,6 +214,13 @@ impl ObserverFrame {
             is_cut: self.is_cut,
         }
     }
+}
+
+/// The direction in which the observer moves at the first step, in its own axes; -z for one at rest in the scene.
+pub(super) fn heading(placed: &PlacedScene) -> DVec3 {
+    let moment = placed.scene().moment(0);
+    let motion = moment.map(|moment| moment.heading_own());
+    motion.flatten().unwrap_or(DVec3::NEG_Z)
 }
 
 /// Projections in the order in which they are tried, each with the largest angle, in degrees, that a picture may show.

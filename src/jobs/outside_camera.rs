@@ -2,9 +2,8 @@
 
 use glam::DVec3;
 
-use super::extent::{bounds, reach, scaled};
+use super::extent::{bounds, reach, round_below, scaled};
 use super::framing::{Aim, CameraSettings, FRAME, FieldOfView, FramingError, PictureProjection};
-use super::guides::round_below;
 use crate::render::{Camera, CameraError, Projection};
 use crate::spacetime::length;
 

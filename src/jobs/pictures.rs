@@ -4,11 +4,10 @@ use std::path::Path;
 
 use super::exposure::expose;
 use super::files::check_outputs;
-use super::framing::heading;
 use super::grid::Grid;
 use super::guides::label;
 use super::layout::{Cell, Page, Shape};
-use super::observer_frame::ObserverFrame;
+use super::observer_frame::{ObserverFrame, heading};
 use super::outside_camera::{Contents, OutsideCamera};
 use super::picture_settings::{PictureSettings, PictureView};
 use super::progress::Progress;

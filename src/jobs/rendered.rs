@@ -5,10 +5,11 @@ use thiserror::Error;
 
 use super::files::OutputError;
 use super::framing::FramingError;
+use super::observer_frame::FrameFacts;
 use super::progress::Cancelled;
 use super::tally::Tally;
 use crate::pipeline::PlacedSceneError;
-use crate::render::{CameraError, Projection};
+use crate::render::CameraError;
 use crate::write::WriteError;
 
 /// Reasons why there are no pictures, or not all of them.
@@ -90,19 +91,6 @@ impl Rendered {
         self.frame = self.frame.or(other.frame);
         self
     }
-}
-
-/// What the observer's views show of the sky.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrameFacts {
-    /// How directions are laid out, with the field of view.
-    pub projection: Projection,
-    /// The angle, in degrees, between the left and right edges of a picture, or between the upper and lower ones if that is
-    /// more.
-    pub widest_deg: f64,
-    /// Whether everything was to be in the picture, and is not: no picture is wide enough. The camera looks in the direction
-    /// of motion then.
-    pub is_cut: bool,
 }
 
 /// A view of the observer that shows only the background, because every object is in another direction or smaller than

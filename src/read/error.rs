@@ -5,10 +5,13 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::EXPECTED_MODEL;
 use super::text::shown;
 use crate::material::MaterialError;
 use crate::mesh::MeshError;
+
+/// The extensions of files that hold a model, in words, and what becomes of other files.
+pub const EXPECTED_MODEL: &str =
+    ".glb, .gltf, .obj, .ply, .stl or .off; Blender or MeshLab convert other formats";
 
 /// Why a file does not give a model.
 ///

@@ -18,10 +18,6 @@ pub(super) enum Kind {
     Off,
 }
 
-/// The extensions of files that hold a model, in words, and what becomes of other files.
-pub const EXPECTED_MODEL: &str =
-    ".glb, .gltf, .obj, .ply, .stl or .off; Blender or MeshLab convert other formats";
-
 /// Bytes at the start of a file that tell what it is, except of a binary STL file, which its length tells.
 const TELLING: usize = 512;
 

@@ -34,10 +34,11 @@ mod vertex;
 pub(crate) use access::Reach;
 pub use access::{Access, read_whole};
 pub use error::{
-    AccessorProblem, DataProblem, DocumentProblem, NodeProblem, ObjProblem, ReadError, UriProblem,
+    AccessorProblem, DataProblem, DocumentProblem, EXPECTED_MODEL, NodeProblem, ObjProblem,
+    ReadError, UriProblem,
 };
 pub use findings::Findings;
-pub use kind::{EXPECTED_MODEL, is_model_extension, is_model_of_one_file};
+pub use kind::{is_model_extension, is_model_of_one_file};
 pub(crate) use model::read_named_model;
 pub use model::{read_gltf_bytes, read_model, read_model_bytes};
 pub use note::Note;
