@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use super::framing::{CameraSettings, FramingError};
 use super::vertex_colors::VertexColors;
 use super::{DEFAULT_MAX_TRIANGLES, OutputError};
 use crate::pipeline::PlacedScene;
@@ -18,6 +19,8 @@ pub struct ExportSettings {
     pub split: bool,
     /// How the steps of one file follow each other as an animation; with `None` all steps are visible at once.
     pub playback: Option<Playback>,
+    /// What the observer's camera in a glTF file shows of the sky; `None` for a file without a camera.
+    pub camera: Option<CameraSettings>,
     /// Levels of detail: tolerances for all objects, each with files of its own, `out_lod0.glb`, `out_lod1.glb`, ...;
     /// if there are none, the tolerances of the scene are used.
     pub levels: Vec<Tolerance>,
@@ -45,6 +48,7 @@ impl Default for ExportSettings {
         Self {
             split: false,
             playback: None,
+            camera: None,
             levels: vec![],
             subdivide: true,
             max_triangles: DEFAULT_MAX_TRIANGLES,
@@ -66,6 +70,12 @@ pub enum ExportError {
     /// An animation is asked for in a format that cannot hold one.
     #[error("a .ply has no time, expected .glb or .gltf for an animation")]
     NoTime,
+    /// A camera is asked for in a format that cannot hold one.
+    #[error("a .ply has no camera, expected .glb or .gltf for one")]
+    NoCamera,
+    /// No camera has the objects in its picture.
+    #[error(transparent)]
+    Framing(#[from] FramingError),
     /// An animation is asked for, but the scene has only one step.
     #[error("the scene has one step, expected at least two for an animation")]
     OneStep,
@@ -122,6 +132,9 @@ impl ExportError {
 impl ExportSettings {
     /// Checks that the playback is possible with the format, the scene and the other settings.
     pub(super) fn check(&self, placed: &PlacedScene, format: Format) -> Result<(), ExportError> {
+        if self.camera.is_some() && format == Format::Ply {
+            return Err(ExportError::NoCamera);
+        }
         let Some(playback) = self.playback else {
             return Ok(());
         };

@@ -12,6 +12,7 @@ mod export;
 mod export_settings;
 mod exposure;
 mod extent;
+mod file_camera;
 mod files;
 mod framing;
 mod grid;

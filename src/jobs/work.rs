@@ -8,10 +8,11 @@ use super::ahead::in_order;
 use super::clock::Clock;
 use super::vertex_colors::{LightNote, VertexColors};
 use super::{Cancelled, Progress, Tally};
+use crate::material::Part;
 use crate::pipeline::{Facts, Photosurface, PlacedScene, SurfaceOptions};
 use crate::write::{
-    Export, Format, GltfFile, GltfOutput, Playback, Report, Target, WriteError, write_ply,
-    write_whole, write_whole_gltf, write_whole_target,
+    Export, Format, GltfFile, GltfOutput, ObserverCamera, Playback, Report, Target, WriteError,
+    write_ply, write_whole, write_whole_gltf, write_whole_target,
 };
 
 /// An export at work: its settings, and the totals and facts of the photosurfaces made so far.
@@ -20,6 +21,9 @@ pub(super) struct Work<'a> {
     pub(super) wanted: SurfaceOptions,
     pub(super) format: Format,
     pub(super) playback: Option<Playback>,
+    pub(super) camera: Option<&'a ObserverCamera>,
+    /// The observer's marker, if the file has one.
+    pub(super) marker: Option<&'a Part>,
     pub(super) progress: &'a dyn Progress,
     /// What colours vertices, if the scene calls for it.
     pub(super) colors: Option<VertexColors<'a>>,
@@ -92,8 +96,10 @@ impl Work<'_> {
     /// Writes a GLB or both files of a `.gltf`.
     fn gltf(&mut self, steps: Range<usize>, output: GltfOutput<'_>) -> Result<(), WriteError> {
         let (scene, attributes) = (self.placed.facts(), self.wanted.attributes);
-        let marker = self.placed.marker();
-        let mut file = GltfFile::new(output, &scene, marker, attributes, self.playback)?;
+        let mut file = GltfFile::new(output, &scene, self.marker, attributes, self.playback)?;
+        if let Some(camera) = self.camera {
+            file.set_camera(camera.clone());
+        }
         self.fill(&mut file, steps)?;
         file.finish()?;
         self.clock.stop("write");
@@ -121,7 +127,7 @@ impl Work<'_> {
         let photosurfaces: Vec<_> = photosurfaces.map(|made| self.finished(made)).collect();
         let export = Export {
             scene: &placed.facts(),
-            marker: placed.marker(),
+            marker: self.marker,
             photosurfaces: &photosurfaces,
             playback: None,
         };

@@ -1,5 +1,6 @@
 //! Photosurfaces as files: glTF, GLB, PLY, and the JSON report.
 
+mod camera;
 mod error;
 mod export;
 mod file;
@@ -13,6 +14,7 @@ mod report;
 mod size;
 mod text;
 
+pub use camera::ObserverCamera;
 pub use error::WriteError;
 pub(crate) use export::FRAMES_PER_SECOND;
 pub use export::{Export, Playback};

@@ -61,6 +61,7 @@ mod import {
 
 mod export {
     mod animation;
+    mod camera;
     mod hard_properties;
     mod jobs;
     mod materials;

@@ -198,12 +198,12 @@ pub(crate) fn glb_json(bytes: &[u8]) -> Value {
     Glb::new(bytes).json
 }
 
-/// The names of all nodes of a GLB, in order.
+/// The names of all nodes of a GLB that have a mesh, in order.
 pub(crate) fn node_names(bytes: &[u8]) -> Vec<String> {
     let json = glb_json(bytes);
     let nodes = json["nodes"].as_array().expect("nodes");
-    nodes
-        .iter()
+    let with_mesh = nodes.iter().filter(|node| node.get("mesh").is_some());
+    with_mesh
         .map(|node| node["name"].as_str().expect("a name").to_owned())
         .collect()
 }
