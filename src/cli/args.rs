@@ -197,7 +197,7 @@ fn folder(text: &str) -> anyhow::Result<PathBuf> {
 
 /// `X,Y,Z`
 pub(super) fn vector(text: &str) -> anyhow::Result<DVec3> {
-    let numbers = numbers(text)?;
+    let numbers = numbers(text, "expected three numbers, X,Y,Z like 0,0.5,-0.9")?;
     let &[x, y, z] = numbers.as_slice() else {
         anyhow::bail!("has {} numbers, expected 3: X,Y,Z", numbers.len());
     };
@@ -206,7 +206,7 @@ pub(super) fn vector(text: &str) -> anyhow::Result<DVec3> {
 
 /// `X,Y,Z,W`
 fn quaternion(text: &str) -> anyhow::Result<Rotation> {
-    let numbers = numbers(text)?;
+    let numbers = numbers(text, "expected four numbers, X,Y,Z,W like 0,0.6,0,0.8")?;
     let &[x, y, z, w] = numbers.as_slice() else {
         anyhow::bail!("has {} numbers, expected 4: X,Y,Z,W", numbers.len());
     };
@@ -235,14 +235,17 @@ fn read_flight(path: &Path, units: Option<Units>) -> anyhow::Result<FlightPlan> 
     FlightPlan::from_json(text, units).with_context(place)
 }
 
+/// The forms that steps may have.
+const STEPS_FORMS: &str = "expected proper times like 0,1.5,3, or FROM..TO/COUNT like -6..6/7";
+
 /// `A,B,C` or `FROM..TO/COUNT`
 fn steps(text: &str) -> anyhow::Result<Steps> {
     let Some((from, rest)) = text.split_once("..") else {
-        return numbers(text).map(Steps);
+        return numbers(text, STEPS_FORMS).map(Steps);
     };
     let (to, count) = rest
         .split_once('/')
-        .context("no count, expected FROM..TO/COUNT like -6..6/7")?;
+        .context("no count, expected FROM..TO/COUNT like -6..6/7; or proper times like 0,1.5,3")?;
     let count = count.trim();
     let count = count
         .parse()
@@ -250,7 +253,13 @@ fn steps(text: &str) -> anyhow::Result<Steps> {
     Ok(Steps(even_steps(number(from)?, number(to)?, count)?))
 }
 
-fn numbers(text: &str) -> anyhow::Result<Vec<f64>> {
+/// The numbers of a list with commas; `forms` says what the list may be.
+fn numbers(text: &str, forms: &str) -> anyhow::Result<Vec<f64>> {
+    let number = |text: &str| -> anyhow::Result<f64> {
+        let text = text.trim();
+        let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+        number.with_context(|| format!("\"{text}\" is not a finite number; {forms}"))
+    };
     text.split(',').map(number).collect()
 }
 

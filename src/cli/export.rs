@@ -23,19 +23,23 @@ use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print, size, stdout_is_closed};
 use super::models::ModelsArgs;
 use super::output::{Bar, FileFormat, check_destinations, from_first_to_last, is_stdout};
+use super::provenance::provenance;
 use super::status::Status;
 use super::wording::{in_words_of_flags, or_ply};
+
+/// Shown below the flags.
+const EXAMPLES: &str = "\
+Examples:
+  photosurface export
+  photosurface export scene.json -o out.glb
+  photosurface export bunny.obj --beta 0.9 --steps 0,1,2 -o flying.glb";
 
 /// Write photosurfaces as meshes
 ///
 /// Every object, at every step, becomes a mesh of its own in the observer's frame, observer at the origin.
-/// Without SCENE or MESH the built-in scene "sphere" is used:
-///
-///     photosurface export
-///     photosurface export scene.json -o out.glb
-///     photosurface export bunny.obj --beta 0.9 --steps 0,1,2 -o flying.glb
+/// Without SCENE or MESH the built-in scene "sphere" is used.
 #[derive(Debug, clap::Args)]
-#[command(verbatim_doc_comment)]
+#[command(after_long_help = EXAMPLES)]
 pub(super) struct ExportArgs {
     #[command(flatten)]
     input: InputArgs,
@@ -102,9 +106,13 @@ struct OutputArgs {
         allow_hyphen_values = true
     )]
     fps: f64,
-    /// Write a JSON report of what was made and how long it took; - for stdout
+    /// Write a JSON report of what was made, of what, and how long it took; - for stdout; photosurface schema --report prints
+    /// its schema
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
+    /// Leave out of the report how long each stage took, so that it is the same on every run
+    #[arg(long, requires = "report")]
+    no_times: bool,
 }
 
 /// How steps are shown one after another.
@@ -141,7 +149,10 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     let placed = args.models.placed(scene, input.models)?;
     let is_side_by_side = !args.models.side_by_side()?.is_empty();
     let camera = args.camera.settings(input.is_mesh, is_side_by_side)?;
-    let settings = args.settings(camera, start, &input.textures);
+    let settings = ExportSettings {
+        provenance: provenance(&args.input, &input.files),
+        ..args.settings(camera, start, &input.textures)
+    };
     let levels = export_levels(&placed, &settings, format, &path).map_err(in_words_of_flags)?;
     check_destinations(levels.iter().flat_map(ExportLevel::outputs), &input.files)?;
     if format != Format::Ply {
@@ -242,12 +253,14 @@ impl ExportArgs {
             subdivide: self.accuracy.subdivides(),
             max_triangles: self.accuracy.max_triangles(),
             report: self.output.report.clone(),
+            report_times: !self.output.no_times,
             keep_facts: self.verbosity.is_verbose(),
             stages_before: vec![StageTime {
                 name: "read",
                 seconds: start.elapsed().as_secs_f64(),
             }],
             textures: textures.clone(),
+            ..ExportSettings::default()
         }
     }
 }

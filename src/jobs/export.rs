@@ -325,6 +325,9 @@ impl FittedExport {
             clock: self.clock.resumed(),
             tally: Tally::default(),
             facts: (level.settings.keep_facts || has_report).then(Vec::new),
+            provenance: &level.settings.provenance,
+            has_times: level.settings.report_times,
+            outputs: vec![],
             data_files: vec![],
         }
     }

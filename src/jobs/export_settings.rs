@@ -10,7 +10,7 @@ use super::{DEFAULT_MAX_TRIANGLES, OutputError};
 use crate::pipeline::PlacedScene;
 use crate::render::Textures;
 use crate::scene::Tolerance;
-use crate::write::{FRAMES_PER_SECOND, Format, Playback, StageTime, WriteError};
+use crate::write::{FRAMES_PER_SECOND, Format, Playback, Provenance, StageTime, WriteError};
 
 /// Settings for the export of a placed scene.
 #[derive(Clone, Debug)]
@@ -36,6 +36,10 @@ pub struct ExportSettings {
     /// Whether [`Exported`](super::Exported) holds the facts about every photosurface. Their memory grows with the number of
     /// photosurfaces.
     pub keep_facts: bool,
+    /// Whether the report has the times of the stages; without them it is the same on every run.
+    pub report_times: bool,
+    /// What the report says of files read and of the command.
+    pub provenance: Provenance,
     /// Stages that the caller has finished before the export, with their times, for the report.
     pub stages_before: Vec<StageTime>,
     /// The textures whose colours become those of vertices if the scene calls for the Doppler effect.
@@ -54,6 +58,8 @@ impl Default for ExportSettings {
             max_triangles: DEFAULT_MAX_TRIANGLES,
             report: None,
             keep_facts: true,
+            report_times: true,
+            provenance: Provenance::default(),
             stages_before: vec![],
             textures: Textures::default(),
         }

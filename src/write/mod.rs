@@ -23,4 +23,5 @@ pub use file::{Target, abandon_writes, destination, write_whole, write_whole_tar
 pub use format::Format;
 pub use gltf::{GltfFile, GltfOutput, replaced_data, write_glb, write_gltf, write_whole_gltf};
 pub use ply::write_ply;
-pub use report::{Report, StageTime};
+pub(crate) use report::schema_of;
+pub use report::{OutputFile, Provenance, Report, StageTime};

@@ -79,6 +79,7 @@ mod cli {
     mod accuracy;
     mod check;
     mod commands;
+    mod documents;
     mod faults;
     mod flags;
     mod flight;
