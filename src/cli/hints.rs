@@ -24,6 +24,7 @@ const MEANT: &[(&str, &[&str])] = &[
     ("jobs", &["threads"]),
     ("levels", &["lod"]),
     ("lorentz", &["gamma"]),
+    ("morph", &["animate"]),
     ("out", &["output"]),
     ("outfile", &["output"]),
     ("pixels", &["size"]),

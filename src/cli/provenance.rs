@@ -10,9 +10,12 @@ use super::args::InputArgs;
 pub(super) fn provenance(input: &InputArgs, files: &[PathBuf]) -> Provenance {
     let stdin = input.input.iter().filter(|path| *path == Path::new("-"));
     let files = stdin.chain(files);
+    let arguments = std::env::args_os().skip(1);
+    let arguments = arguments.map(|argument| argument.to_string_lossy().into_owned());
     Provenance {
-        command: std::env::args_os()
-            .map(|argument| argument.to_string_lossy().into_owned())
+        // Wherever the program lies, its name is the same.
+        command: std::iter::once("photosurface".to_owned())
+            .chain(arguments)
             .collect(),
         inputs: files.map(|file| file.display().to_string()).collect(),
         ..Provenance::default()

@@ -47,7 +47,8 @@ pub struct CheckedObject {
     pub relative_gamma: f64,
     /// The rapidity of the same velocity.
     pub relative_rapidity: f64,
-    /// The box around its vertices in its rest frame; absent if it has none.
+    /// The box around its vertices at rest, with the object's origin at its position: for an object at rest in the scene,
+    /// its place there; for a moving object, in the axes of its rest frame. Absent if the object has no vertices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_rest: Option<Bounds>,
     /// The box around the places where these vertices are seen at all steps, in the observer's frame. Between vertices a
@@ -156,7 +157,11 @@ impl CheckedObject {
                     relative_gamma: relative.gamma(),
                     relative_rapidity: relative.rapidity(),
                     at_rest: meshes()
-                        .map(|mesh| mesh.bounds().map(Bounds::new))
+                        .map(|mesh| {
+                            let (low, high) = mesh.bounds()?;
+                            let position = object.position.get();
+                            Some(Bounds::new((low + position, high + position)))
+                        })
                         .fold(None, joined),
                     photosurface: None,
                     photosurface_at_steps: vec![],

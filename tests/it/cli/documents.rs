@@ -10,7 +10,7 @@ const RICH: &str = r##"{ "title": "rich", "units": { "length_m": 3 }, "tolerance
     "observer": { "velocity": { "beta": 0.6, "direction": [1, 0, 0] }, "marker": 0.1, "integrator": { "rk4": 0.1 },
         "flight": [{ "proper_time": 1, "acceleration": [0, 0, -0.1] }, { "proper_time": 1, "steer": "coordinated" }] },
     "steps": [0, 0.5], "objects": [
-    { "name": "ball", "shape": { "sphere": { "radius": 1, "resolution": 4 } }, "position": [0, 3, 0], "emission": { "temperature_K": 3000 } },
+    { "name": "ball", "shape": { "sphere": { "radius": 1, "resolution": 4 } }, "position": [0, 3, 0], "emission": { "kelvin": 3000 } },
     { "name": "roof", "file": "roof.obj", "position": [5, 0, 1], "scale": 2, "velocity": [0, 0.5, 0], "model": "contracted" } ] }"##;
 
 const ROOF: &str = "o left\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no right\nv 3 1 0\nf 2 4 3\n";
@@ -338,11 +338,11 @@ fn check_tells_where_objects_are_and_are_seen() {
     let table = workplace.run("check plate.json").success();
     let lines: Vec<&str> = table.stdout_text().lines().collect();
     assert_eq!(
-        lines[3].split_whitespace().next(),
+        lines[4].split_whitespace().next(),
         Some("object"),
         "{table}"
     );
-    let cells: Vec<&str> = lines[4].split_whitespace().collect();
+    let cells: Vec<&str> = lines[5].split_whitespace().collect();
     assert_eq!(cells[..3], ["plate", "0,0,-5", "4,4,0"], "{table}");
     assert_eq!(cells.len(), 5, "{table}");
 }

@@ -390,7 +390,8 @@ fn flags_that_people_try_are_told_the_flag_that_is_meant() {
             "cost ball.json --samples 9",
             "did you mean --places or --pixel-samples?",
         ),
-        ("export morph --morph", "did you mean --animate=morph?"),
+        ("export ball.json morph", "did you mean --animate=morph?"),
+        ("export ball.json --morph", "did you mean --animate?"),
     ] {
         workplace.run(line).error(&[tip]);
     }

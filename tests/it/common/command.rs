@@ -174,6 +174,15 @@ impl Run {
         self
     }
 
+    /// What `check` predicts, without the table of places behind it.
+    #[track_caller]
+    pub(crate) fn prediction(&self) -> &str {
+        let tables = self.stdout_text().split_once("\n\n");
+        let (prediction, places) = tables.expect("two tables");
+        assert!(places.starts_with("object"), "{self}");
+        prediction
+    }
+
     pub(crate) fn stdout_text(&self) -> &str {
         std::str::from_utf8(&self.stdout).expect("text")
     }
