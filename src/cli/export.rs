@@ -148,7 +148,7 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     tell_of_ramp(&scene, args.verbosity);
     let placed = args.models.placed(scene, input.models)?;
     let is_side_by_side = !args.models.side_by_side()?.is_empty();
-    let camera = args.camera.settings(input.is_mesh, is_side_by_side)?;
+    let camera = args.camera.settings(is_side_by_side)?;
     let settings = ExportSettings {
         provenance: provenance(&args.input, &input.files),
         ..args.settings(camera, start, &input.textures)

@@ -24,6 +24,7 @@ mod output;
 mod provenance;
 mod render;
 mod schema;
+mod speeds;
 mod status;
 mod tables;
 mod wording;

@@ -2,7 +2,8 @@
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
-use super::framing::{CameraSettings, FramingError, seen_vertices};
+use super::framing::{CameraSettings, FramingError};
+use super::seen::seen_vertices;
 use crate::pipeline::PlacedScene;
 use crate::render::Camera;
 use crate::spacetime::length;

@@ -42,7 +42,7 @@ PLAYING = {
     for flag, words in [("--animate", "frames"), ("--animate=morph", "morph targets")]
     for name, kind in {
         "steps": lambda flag: scene(PASSING, flag),
-        "steps with a camera": lambda flag: scene(PASSING, flag, "--camera"),
+        "steps with a camera": lambda flag: scene(PASSING, flag, "--camera", "--track"),
         "a hierarchy with a texture": lambda flag: mesh(write_hierarchy, flag, steps=range(7)),
         "an OBJ with materials": lambda flag: mesh(write_obj, flag, steps=range(7)),
     }.items()

@@ -23,6 +23,7 @@ SCENE = {
 }
 AIMS = {
     "as render looks": [],
+    "tracking": ["--track"],
     "along a direction": ["--look", "1,0.1,-0.1", "--fov", "40"],
     "at a place": ["--target", "6,0,1", "--fov", "50"],
 }
@@ -35,7 +36,7 @@ def drawn(photosurface, tmp_path):
     def drawn(scene, *flags):
         flags = [*flags, "--size", f"{SIZE[0]}x{SIZE[1]}", "--samples", "1", "--background", BACKGROUND]
         path = tmp_path / "rays.png"
-        photosurface("render", scene, "--method", "rays", *flags, "-o", path)
+        photosurface("render", scene, "--method", "rays", "--projection", "perspective", *flags, "-o", path)
         pictures = [numpy.asarray(Image.open(step).convert("RGB")) for step in sorted(tmp_path.glob("rays*.png"))]
         return [(picture != [255, 0, 255]).any(axis=2) for picture in pictures]
 
@@ -86,11 +87,11 @@ def test_each_of_several_steps_has_its_camera(aim, export, drawn, tmp_path):
 
 @pytest.mark.parametrize("how", ["--animate", "--animate=morph"])
 def test_an_animation_has_a_camera_that_turns(how, export, drawn, tmp_path):
-    path = export(SCENE, "--tolerance", "1e-4", "--camera", how)
+    path = export(SCENE, "--tolerance", "1e-4", "--camera", "--track", how)
     blender.open_file(path)
     (camera,) = [found for found in bpy.data.objects if found.type == "CAMERA"]
     use(camera)
-    for step, mask in enumerate(drawn(path.parent / "scene.json")):
+    for step, mask in enumerate(drawn(path.parent / "scene.json", "--track")):
         bpy.context.scene.frame_set(step)
         assert_same_silhouette(silhouette(tmp_path / f"{step}.png"), mask)
 

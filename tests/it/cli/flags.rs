@@ -408,7 +408,7 @@ fn flags_that_people_try_are_told_the_flag_that_is_meant() {
 fn values_in_no_form_are_told_all_forms() {
     let workplace = Workplace::with_ball();
     let tolerance = ["like 1e-3", "abs:0.01", "deg:0.02"];
-    let steps = ["0,1.5,3", "FROM..TO/COUNT like -6..6/7"];
+    let steps = ["A,B,C like -1,0,2.5", "FROM..TO/COUNT like -6..6/7"];
     for (line, forms) in [
         ("--tolerance fine", &tolerance[..]),
         ("--tolerance rel:1", &tolerance),
