@@ -91,7 +91,7 @@ pub struct CheckedLevel {
 pub struct CheckedTriangles {
     /// The name of the object in the scene.
     pub name: String,
-    /// Its tolerance, as flags write it: `1e-3`, `abs:0.01`, `deg:0.02`.
+    /// Its tolerance, as flags write it: `0.001`, `abs:0.01`, `deg:0.02`.
     pub tolerance: String,
     /// Number of triangles before refinement.
     pub triangles_in: f64,
@@ -197,7 +197,7 @@ impl CheckedLevel {
         let objects: Vec<_> = objects
             .map(|((object, _), prediction)| CheckedTriangles {
                 name: object.name.clone(),
-                tolerance: scene.tolerance(object).to_string(),
+                tolerance: scene.tolerance(object).to_flag(),
                 triangles_in: prediction.triangles_in,
                 triangles: prediction.triangles,
                 certified: prediction.reachable,

@@ -52,7 +52,7 @@ pub struct Facts {
     pub triangles: usize,
     /// The box around the vertices, in the observer's frame, before files move the photosurface beside others.
     pub bounds: Bounds,
-    /// The tolerance that was asked for, as flags write it: `1e-3`, `abs:0.01`, `deg:0.02`. The certificate has its
+    /// The tolerance that was asked for, as flags write it: `0.001`, `abs:0.01`, `deg:0.02`. The certificate has its
     /// length or angle.
     pub tolerance: String,
     /// How many times, at most, the photosurface map magnifies an error of the source's coordinates in the rest frame:

@@ -354,7 +354,7 @@ impl PlacedScene {
             vertices: surface.seen.mesh.positions().len(),
             triangles: surface.seen.mesh.triangles().len(),
             bounds: Bounds::new(surface.seen.mesh.bounds().unwrap_or_default()),
-            tolerance: self.scene.tolerance(object).to_string(),
+            tolerance: self.scene.tolerance(object).to_flag(),
             condition: surface.seen.condition(shown),
             beside: (beside != DVec3::ZERO).then(|| beside.to_array()),
             certificate: surface.certificate,

@@ -10,7 +10,7 @@ const RICH: &str = r##"{ "title": "rich", "units": { "length_m": 3 }, "tolerance
     "observer": { "velocity": { "beta": 0.6, "direction": [1, 0, 0] }, "marker": 0.1, "integrator": { "rk4": 0.1 },
         "flight": [{ "proper_time": 1, "acceleration": [0, 0, -0.1] }, { "proper_time": 1, "steer": "coordinated" }] },
     "steps": [0, 0.5], "objects": [
-    { "name": "ball", "shape": { "sphere": { "radius": 1, "resolution": 4 } }, "position": [0, 3, 0], "emission": { "kelvin": 3000 } },
+    { "name": "ball", "shape": { "sphere": { "radius": 1 } }, "position": [0, 3, 0], "emission": { "kelvin": 3000 } },
     { "name": "roof", "file": "roof.obj", "position": [5, 0, 1], "scale": 2, "velocity": [0, 0.5, 0], "model": "contracted" } ] }"##;
 
 const ROOF: &str = "o left\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no right\nv 3 1 0\nf 2 4 3\n";
@@ -152,7 +152,7 @@ fn reports_name_files_and_their_lengths() {
         level["outputs"][0]["bytes"],
         workplace.read("levels_lod1.glb").len()
     );
-    assert_eq!(level["objects"][0]["tolerance"], "1e-2");
+    assert_eq!(level["objects"][0]["tolerance"], "0.01");
 }
 
 #[test]

@@ -179,7 +179,7 @@ impl Run {
     pub(crate) fn prediction(&self) -> &str {
         let tables = self.stdout_text().split_once("\n\n");
         let (prediction, places) = tables.expect("two tables");
-        assert!(places.starts_with("object"), "{self}");
+        assert!(places.trim_start().starts_with("object"), "{self}");
         prediction
     }
 
