@@ -49,7 +49,8 @@ pub(super) struct ObserverArgs {
     #[command(flatten)]
     speed: SpeedArgs,
     /// Direction of the observer's motion, a vector of any length. Without a speed it only changes the direction of the
-    /// scene's velocity; a mesh without a scene is seen from that side, at rest [default for a mesh: 0,0,-1]
+    /// scene's velocity [default for a mesh: -1,0,0, so that the observer passes before its front, which is the side of z; with
+    /// --observer 0,0,-1]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     direction: Option<DVec3>,
     /// Velocity of the observer in units of the speed of light, in place of a speed and a direction

@@ -17,23 +17,30 @@ pub(super) struct GuideArgs {
     /// Draw the observer's axes at its place in views from outside: x red, y green, z blue
     #[arg(long)]
     axes: bool,
+    /// Draw a grid of longitude and latitude every 30 degrees, with the direction of motion, in the observer's pictures
+    /// [default in pictures of the whole sky]
+    #[arg(long)]
+    grid: bool,
+    /// Draw no grid in pictures of the whole sky
+    #[arg(long, conflicts_with = "grid")]
+    no_grid: bool,
     /// Draw a bar of a round length in scene units in views from outside, as it is in the middle of what is shown
     #[arg(long, conflicts_with = "full_sky")]
     scale_bar: bool,
 }
 
-impl From<&GuideArgs> for Guides {
-    fn from(args: &GuideArgs) -> Self {
-        Self {
-            ghosts: args.ghost.clone(),
-            axes: args.axes,
-            scale_bar: args.scale_bar,
-            wireframe: args.wireframe,
+impl GuideArgs {
+    /// The guides of pictures, of the whole sky or of less.
+    pub(super) fn guides(&self, of_full_sky: bool) -> Guides {
+        Guides {
+            ghosts: self.ghost.clone(),
+            axes: self.axes,
+            scale_bar: self.scale_bar,
+            sky_grid: self.grid || of_full_sky && !self.no_grid,
+            wireframe: self.wireframe,
         }
     }
-}
 
-impl GuideArgs {
     /// Whether something is asked for that only pictures from outside have.
     pub(super) fn are_for_outside(&self) -> bool {
         self.axes || self.scale_bar

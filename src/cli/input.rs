@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, bail, ensure};
-use photosurface::jobs::{MAX_SCENE_BYTES, fly_by, scene_from_bytes};
+use photosurface::jobs::{MAX_SCENE_BYTES, fly_by, passing_observer, scene_from_bytes};
 use photosurface::read::{Access, Findings, ReadError, read_whole};
 use photosurface::scene::BUILT_IN_SCENES;
 use photosurface::{Model, Object, Observer, Scene, Source, Textures};
@@ -159,7 +159,11 @@ impl Reading<'_> {
             self.verbosity.note(format_args!("{place}: {note}"));
         }
         let source = Source::File(path.unwrap_or(Path::new("-")).to_owned());
-        let scene = Scene::new(Observer::default(), vec![Object::new(name, source)])?;
+        let observer = match self.observer.has_place() {
+            true => Observer::default(),
+            false => passing_observer(),
+        };
+        let scene = Scene::new(observer, vec![Object::new(name, source)])?;
         let mut scene = self.observer.apply(scene)?;
         if !self.observer.has_place() {
             scene = fly_by(scene, &model)?;

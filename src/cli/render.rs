@@ -105,7 +105,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     let scene = &scenes[0].1;
     tell_of_ramp(scene, verbosity);
     settings.background = camera.background(scene, settings.background);
-    settings.guides = guides.into();
+    settings.guides = guides.guides(camera.shows_full_sky());
     settings.surface_options = args.accuracy.wanted(Precision::Double);
     let fits_budget = camera.shows_meshes(method) && settings.surface_options.subdivide;
     let fitted = |placed| match fits_budget {

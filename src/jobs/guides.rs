@@ -35,6 +35,9 @@ pub struct Guides {
     /// Whether a bar is drawn in views from outside that shows a round length, in scene units, at the distance of the camera's target.
     /// Pictures of the whole sky have no scale and no bar.
     pub scale_bar: bool,
+    /// Whether a grid of longitude and latitude every 30 degrees, and the direction of motion, are drawn in the observer's
+    /// pictures.
+    pub sky_grid: bool,
     /// Whether the edges of all triangles of photosurfaces are drawn, also in the observer's pictures of them.
     pub wireframe: bool,
 }
@@ -200,7 +203,7 @@ fn write(picture: &mut Picture, text: &str, start: DVec2, color: Color) {
 }
 
 /// A grey that stands out against the background, darker or lighter than it.
-fn contrasting(background: Color) -> Color {
+pub(super) fn contrasting(background: Color) -> Color {
     let [red, green, blue] = background.linear();
     let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
     Color(if luminance > 0.18 {

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::passage::fly_by;
+use super::passage::{fly_by, passing_observer};
 use super::{FileFindings, LoadError};
 use crate::pipeline::{PlacedScene, PlacedSceneError};
 use crate::read::{Access, ReadError, read_whole};
-use crate::scene::{InvalidScene, Object, Observer, PlaceError, Scene, SceneError, Source};
+use crate::scene::{InvalidScene, Object, PlaceError, Scene, SceneError, Source};
 
 /// Limit on the bytes of a scene's text, enough for some hundred thousand objects.
 pub const MAX_SCENE_BYTES: u64 = 100_000_000;
@@ -77,7 +77,7 @@ impl PlacedScene {
     /// findings about each file as well. A file that another file names is read only if [`Access::default`] allows it.
     ///
     /// A mesh by itself is at rest at the origin. The observer is at rest where [`fly_by`](super::fly_by) has it for motion
-    /// along -z; [`Scene::with_observer`] and [`PlacedScene::new`] make a scene with another observer.
+    /// along -x, before the front of the mesh; [`Scene::with_observer`] and [`PlacedScene::new`] make a scene with another observer.
     ///
     /// # Errors
     ///
@@ -122,7 +122,7 @@ impl Access {
         let (model, findings) = self.read_model(path).map_err(wrong)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let object = Object::new(name, Source::File(path.to_owned()));
-        let scene = Scene::new(Observer::default(), vec![object])?;
+        let scene = Scene::new(passing_observer(), vec![object])?;
         let scene = fly_by(scene, &model)?;
         let placed = PlacedScene::new(scene, vec![model])?;
         Ok((placed, vec![(path.to_owned(), findings)]))
