@@ -95,12 +95,12 @@ fn each_step_has_a_camera_below_its_node_and_names_stay_unique() {
 #[test]
 fn one_step_and_files_for_each_step_have_a_camera_beside_their_meshes() {
     let workplace = workplace();
-    let json = exported(&workplace, "--camera --steps 0");
+    let json = exported(&workplace, "--camera --look 1,0,0.5 --steps 0");
     assert_eq!(json["scenes"][0]["nodes"], json!([0, 1, 2, 3]));
     let one = cameras(&json);
     assert_eq!(one[0].0, "camera_2");
     workplace
-        .run("export scene.json --camera --split -o split.glb")
+        .run("export scene.json --camera --look 1,0,0.5 --split -o split.glb")
         .success();
     let split = glb_json(&workplace.read("split_step001.glb"));
     assert_eq!(split["scenes"][0]["nodes"], json!([0, 1, 2, 3]));
