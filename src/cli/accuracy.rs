@@ -183,8 +183,12 @@ impl AccuracyArgs {
 }
 
 /// Such as "1,200 triangles".
-pub(super) fn total(predictions: &[Prediction]) -> String {
-    let triangles = predicted(predictions);
+fn total(predictions: &[Prediction]) -> String {
+    triangles(predicted(predictions))
+}
+
+/// Such as "1,200 triangles".
+pub(super) fn triangles(triangles: f64) -> String {
     let plural = if triangles.round() == 1.0 { "" } else { "s" };
     format!("{} triangle{plural}", grouped_number(triangles))
 }
@@ -229,18 +233,20 @@ fn all_certified(made: &Tally, verbosity: Verbosity) -> bool {
     false
 }
 
+/// The forms that a tolerance may have.
+const TOLERANCE_FORMS: &str = "expected a fraction of the diagonal like 1e-3, a length like abs:0.01 or an angle like deg:0.02";
+
 /// `1e-3`, `abs:0.01` or `deg:0.02`
 pub(super) fn tolerance(text: &str) -> anyhow::Result<Tolerance> {
-    let number = |text: &str| -> anyhow::Result<f64> {
-        text.trim()
-            .parse()
-            .with_context(|| format!("\"{text}\" is not a number (expected e.g. 0.5)"))
+    let number = |number: &str| -> anyhow::Result<f64> {
+        let read = number.trim().parse();
+        read.with_context(|| format!("\"{number}\" is not a number; {TOLERANCE_FORMS}"))
     };
     let tolerance = match text.split_once(':') {
         None => Tolerance::relative(number(text)?),
         Some(("abs", length)) => Tolerance::absolute(number(length)?),
         Some(("deg", degrees)) => Tolerance::degrees(number(degrees)?),
-        Some((unit, _)) => bail!("unknown unit \"{unit}\", expected 1e-3, abs:0.01 or deg:0.02"),
+        Some((unit, _)) => bail!("unknown unit \"{unit}\"; {TOLERANCE_FORMS}"),
     };
     Ok(tolerance?)
 }

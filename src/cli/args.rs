@@ -221,7 +221,7 @@ fn folder(text: &str) -> anyhow::Result<PathBuf> {
 
 /// `X,Y,Z`
 pub(super) fn vector(text: &str) -> anyhow::Result<DVec3> {
-    let numbers = numbers(text)?;
+    let numbers = list(text, "expected three numbers, X,Y,Z like 0,0.5,-0.9")?;
     let &[x, y, z] = numbers.as_slice() else {
         anyhow::bail!("has {} numbers, expected 3: X,Y,Z", numbers.len());
     };
@@ -230,7 +230,7 @@ pub(super) fn vector(text: &str) -> anyhow::Result<DVec3> {
 
 /// `X,Y,Z,W`
 fn quaternion(text: &str) -> anyhow::Result<Rotation> {
-    let numbers = numbers(text)?;
+    let numbers = list(text, "expected four numbers, X,Y,Z,W like 0,0.6,0,0.8")?;
     let &[x, y, z, w] = numbers.as_slice() else {
         anyhow::bail!("has {} numbers, expected 4: X,Y,Z,W", numbers.len());
     };
@@ -280,10 +280,16 @@ fn steps(text: &str) -> anyhow::Result<Steps> {
     };
     let (to, count) = rest
         .split_once('/')
-        .context("no count, expected FROM..TO/COUNT like -6..6/7")?;
+        .with_context(|| format!("no count; {FORMS}"))?;
     let count = whole(count)
         .with_context(|| format!("\"{}\" is not a count (expected e.g. 7)", count.trim()))?;
     Ok(Steps::Times(even_steps(number(from)?, number(to)?, count)?))
+}
+
+/// The numbers of a list with commas; `forms` says what the list may be.
+fn list(text: &str, forms: &str) -> anyhow::Result<Vec<f64>> {
+    let numbers = numbers(text);
+    numbers.map_err(|_| anyhow!("\"{text}\" has a word that is no number; {forms}"))
 }
 
 /// `A,B,C`

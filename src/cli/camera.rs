@@ -264,8 +264,9 @@ pub(super) fn size(text: &str) -> anyhow::Result<PictureSize> {
         .context("expected WxH like 1280x720")?;
     let number = |text: &str| {
         let text = text.trim();
-        text.parse()
-            .with_context(|| format!("\"{text}\" is not a number of pixels (expected e.g. 640)"))
+        text.parse().with_context(|| {
+            format!("\"{text}\" is not a number of pixels; expected WxH like 1280x720")
+        })
     };
     Ok(PictureSize::new(number(width)?, number(height)?)?)
 }

@@ -6,9 +6,10 @@ use std::thread::available_parallelism;
 
 use anyhow::{Context, ensure};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use rayon::ThreadPoolBuilder;
 
+use super::hints::meant;
 use super::status::{INTERRUPTED, Status, ended};
 use super::{args, check, cost, example, export, flight, messages, render, schema};
 
@@ -31,7 +32,7 @@ const OF_ENVIRONMENT: &str = "RAYON_NUM_THREADS";
 /// not be certified), 2 an error (nothing written), 130 interrupted, 141 stdout closed. Finished files stay after an error.
 #[derive(Debug, Parser)]
 #[command(name = "photosurface", version, max_term_width = 100)]
-struct Cli {
+pub(super) struct Cli {
     #[command(subcommand)]
     command: Command,
     /// Compute with N threads at once [default: one for each core, or RAYON_NUM_THREADS of the environment]
@@ -116,15 +117,32 @@ fn advised(mut error: clap::Error) -> clap::Error {
     let Some(ContextValue::String(argument)) = error.get(ContextKind::InvalidArg) else {
         return error;
     };
-    let animation = export::Animate::from_str(argument, false).is_ok();
-    let tip = format!("a similar argument exists: '--animate={argument}'");
+    let flags = match export::Animate::from_str(argument, false) {
+        Ok(_) => vec![format!("--animate={argument}")],
+        Err(_) => meant(argument, command_of_process().as_deref()),
+    };
+    let similar = match error.get(ContextKind::SuggestedArg) {
+        Some(ContextValue::String(similar)) => vec![similar.clone()],
+        _ => vec![],
+    };
+    let flags = if flags.is_empty() { similar } else { flags };
     // To pass a flag "as a value, use '-- --flag'" would make a file name of it.
     error.remove(ContextKind::Suggested);
-    if animation {
+    error.remove(ContextKind::SuggestedArg);
+    if !flags.is_empty() {
+        let tip = format!("did you mean {}?", flags.join(" or "));
         let tip = ContextValue::StyledStrs(vec![tip.into()]);
         error.insert(ContextKind::Suggested, tip);
     }
     error
+}
+
+/// The command that this process was asked for, if it is one.
+fn command_of_process() -> Option<String> {
+    let cli = Cli::command();
+    let words = std::env::args_os().skip(1);
+    let mut words = words.filter_map(|word| word.into_string().ok());
+    words.find(|word| cli.find_subcommand(word).is_some())
 }
 
 #[cfg(test)]
@@ -134,5 +152,47 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         super::Cli::command().debug_assert();
+    }
+
+    /// Every text that help shows, at two widths of a terminal.
+    fn helps() -> Vec<(usize, String)> {
+        let mut all = vec![];
+        for width in [80, 100] {
+            let mut cli = super::Cli::command().term_width(width);
+            cli.build();
+            let each = cli.get_subcommands().cloned().collect::<Vec<_>>();
+            for command in each.into_iter().chain([cli]) {
+                let mut command = command.term_width(width);
+                for help in [command.render_help(), command.render_long_help()] {
+                    all.push((width, help.to_string()));
+                }
+            }
+        }
+        all
+    }
+
+    /// A line that ends although the next word had room, in the middle of a sentence, was broken by hand.
+    #[test]
+    fn help_breaks_sentences_only_where_the_terminal_ends() {
+        let indent = |line: &str| line.len() - line.trim_start().len();
+        for (width, help) in helps() {
+            let lines: Vec<&str> = help.lines().collect();
+            for pair in lines.windows(2) {
+                let Some(word) = pair[1].split_whitespace().next() else {
+                    continue;
+                };
+                let same_text = indent(pair[0]) == indent(pair[1]) && !pair[0].trim().is_empty();
+                let had_room = pair[0].chars().count() + 1 + word.chars().count() < width;
+                let goes_on = word.starts_with(|c: char| c.is_lowercase());
+                // Commands of examples, and the list of commands.
+                let is_list = word == "photosurface" || pair[1].trim().contains("   ");
+                assert!(
+                    !(same_text && had_room && goes_on && !is_list),
+                    "{width} columns:\n{}\n{}",
+                    pair[0],
+                    pair[1]
+                );
+            }
+        }
     }
 }

@@ -98,7 +98,7 @@ struct MeshArgs {
     /// Number of random places at which the error of each tolerance is measured, at least 1; the same ones on every run
     /// [default: 200000]
     #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true)]
-    samples: Option<NonZeroUsize>,
+    places: Option<NonZeroUsize>,
 }
 
 #[derive(Debug, clap::Args)]
@@ -257,7 +257,7 @@ impl CostArgs {
             rays,
             repeats: self.study.repeats,
             max_triangles: self.meshes.max_triangles.unwrap_or(default.max_triangles),
-            samples: self.meshes.samples.unwrap_or(default.samples),
+            samples: self.meshes.places.unwrap_or(default.samples),
             ..default
         })
     }
@@ -268,7 +268,7 @@ impl MeshArgs {
         [
             ("--tolerances", !self.tolerances.is_empty()),
             ("--max-triangles", self.max_triangles.is_some()),
-            ("--samples", self.samples.is_some()),
+            ("--places", self.places.is_some()),
         ]
     }
 }

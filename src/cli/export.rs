@@ -7,7 +7,9 @@ use std::time::Instant;
 
 use anyhow::{Context, ensure};
 use clap::ValueEnum;
-use photosurface::jobs::{ExportError, ExportLevel, LightNote, export_levels, write_report};
+use photosurface::jobs::{
+    CameraSettings, ExportError, ExportLevel, LightNote, export_levels, write_report,
+};
 use photosurface::pipeline::Facts;
 use photosurface::scene::Attribute;
 use photosurface::write::{Format, Playback, Report, StageTime, WriteError};
@@ -16,23 +18,28 @@ use photosurface::{ExportSettings, Exported, PlacedScene, Textures};
 use super::accuracy::{AccuracyArgs, DetailArgs};
 use super::args::{InputArgs, ObserverArgs, number};
 use super::effects::{EffectArgs, tell_of_ramp};
+use super::file_camera::FileCameraArgs;
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print, size, stdout_is_closed};
 use super::models::ModelsArgs;
 use super::output::{Bar, FileFormat, check_destinations, from_first_to_last, is_stdout};
+use super::provenance::provenance;
 use super::status::Status;
 use super::wording::{in_words_of_flags, or_ply};
+
+/// Shown below the flags.
+const EXAMPLES: &str = "\
+Examples:
+  photosurface export
+  photosurface export scene.json -o out.glb
+  photosurface export bunny.obj --beta 0.9 --steps 0,1,2 -o flying.glb";
 
 /// Write photosurfaces as meshes
 ///
 /// Every object, at every step, becomes a mesh of its own in the observer's frame, observer at the origin.
-/// Without SCENE or MESH the built-in scene "sphere" is used:
-///
-///     photosurface export
-///     photosurface export scene.json -o out.glb
-///     photosurface export bunny.obj --beta 0.9 --steps 0,1,2 -o flying.glb
+/// Without SCENE or MESH the built-in scene "sphere" is used.
 #[derive(Debug, clap::Args)]
-#[command(verbatim_doc_comment)]
+#[command(after_long_help = EXAMPLES)]
 pub(super) struct ExportArgs {
     #[command(flatten)]
     input: InputArgs,
@@ -57,6 +64,8 @@ pub(super) struct ExportArgs {
     attributes: Vec<Attribute>,
     #[command(flatten)]
     output: OutputArgs,
+    #[command(flatten)]
+    camera: FileCameraArgs,
     #[command(flatten)]
     verbosity: Verbosity,
 }
@@ -97,9 +106,13 @@ struct OutputArgs {
         allow_hyphen_values = true
     )]
     fps: f64,
-    /// Write a JSON report of what was made and how long it took; - for stdout
+    /// Write a JSON report of what was made, of what, and how long it took; - for stdout; photosurface schema --report prints
+    /// its schema
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
+    /// Leave out of the report how long each stage took, so that it is the same on every run
+    #[arg(long, requires = "report")]
+    no_times: bool,
 }
 
 /// How steps are shown one after another.
@@ -134,7 +147,12 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     let scene = args.effects.scene(args.accuracy.scene(input.scene));
     tell_of_ramp(&scene, args.verbosity);
     let placed = args.models.placed(scene, input.models)?;
-    let settings = args.settings(start, &input.textures);
+    let is_side_by_side = !args.models.side_by_side()?.is_empty();
+    let camera = args.camera.settings(is_side_by_side)?;
+    let settings = ExportSettings {
+        provenance: provenance(&args.input, &input.files),
+        ..args.settings(camera, start, &input.textures)
+    };
     let levels = export_levels(&placed, &settings, format, &path).map_err(in_words_of_flags)?;
     check_destinations(levels.iter().flat_map(ExportLevel::outputs), &input.files)?;
     if format != Format::Ply {
@@ -147,6 +165,14 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
             }
             error => error.into(),
         })?;
+    }
+    if let Some(level) = levels.first().filter(|level| level.marker().is_none())
+        && placed.marker().is_some()
+    {
+        args.verbosity.note(format_args!(
+            "{}: without the observer's marker, which would hide objects from the camera: they are as near as ten of its radii",
+            level.files()[0].display()
+        ));
     }
     let mut status = Status::Done;
     for (number, level) in levels.into_iter().enumerate() {
@@ -167,7 +193,7 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
 /// their colours.
 fn export(args: &ExportArgs, level: ExportLevel) -> anyhow::Result<(bool, Vec<LightNote>)> {
     let verbosity = args.verbosity;
-    let has_marker = level.placed().marker().is_some();
+    let has_marker = level.marker().is_some();
     let to_stdout = is_stdout(&level.files()[0]);
     let report_path = level.report().map(Path::to_owned);
     let progress = Bar::new(level.pieces(), "photosurfaces", verbosity);
@@ -209,7 +235,12 @@ fn export(args: &ExportArgs, level: ExportLevel) -> anyhow::Result<(bool, Vec<Li
 
 impl ExportArgs {
     /// The settings of the job; the input was read from `start` to now.
-    fn settings(&self, start: Instant, textures: &Textures) -> ExportSettings {
+    fn settings(
+        &self,
+        camera: Option<CameraSettings>,
+        start: Instant,
+        textures: &Textures,
+    ) -> ExportSettings {
         let frames_per_second = self.output.fps;
         ExportSettings {
             split: self.output.split,
@@ -217,16 +248,19 @@ impl ExportArgs {
                 Animate::Frames => Playback::Frames { frames_per_second },
                 Animate::Morph => Playback::Morph { frames_per_second },
             }),
+            camera,
             levels: self.detail.tolerances().to_vec(),
             subdivide: self.accuracy.subdivides(),
             max_triangles: self.accuracy.max_triangles(),
             report: self.output.report.clone(),
+            report_times: !self.output.no_times,
             keep_facts: self.verbosity.is_verbose(),
             stages_before: vec![StageTime {
                 name: "read",
                 seconds: start.elapsed().as_secs_f64(),
             }],
             textures: textures.clone(),
+            ..ExportSettings::default()
         }
     }
 }

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::fs;
 use std::io::{self, StdoutLock, Write, stderr, stdout};
 use std::path::Path;
+use std::sync::Mutex;
 
 use anyhow::{Context, ensure};
 
@@ -37,6 +38,9 @@ impl Verbosity {
 
     /// Something the user should know about the input.
     pub(super) fn note(self, note: impl Display) {
+        if let Ok(mut notes) = NOTES.lock() {
+            notes.push(note.to_string());
+        }
         if !self.quiet {
             say(format_args!("note: {note}"));
         }
@@ -55,6 +59,14 @@ impl Verbosity {
             say(detail);
         }
     }
+}
+
+/// All notes of this process, told or not, for results that hold them.
+static NOTES: Mutex<Vec<String>> = Mutex::new(vec![]);
+
+/// What the user should know, in the order in which it was found.
+pub(super) fn notes_so_far() -> Vec<String> {
+    NOTES.lock().map_or(vec![], |notes| notes.clone())
 }
 
 /// One error with its causes, in one line.

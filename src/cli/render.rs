@@ -25,18 +25,21 @@ use super::models::ModelsArgs;
 use super::output::{Bar, check_destinations, extension, from_first_to_last, is_stdout};
 use super::status::Status;
 
+/// Shown below the flags.
+const EXAMPLES: &str = "\
+Examples:
+  photosurface render
+  photosurface render --sheet --example cube -o cube.png
+  photosurface render --example street --look 0,0,-1 -o street.png
+  photosurface render --example cube --view outside --ghost rest,contracted --axes -o outside.png";
+
 /// Make pictures of what the observer sees, or of photosurfaces from outside
 ///
 /// The observer's view is made by following rays of light back into the rest frame of each object, exact at every
 /// pixel, or with --method mesh by drawing the photosurfaces that export would write.
-/// Without SCENE or MESH the built-in scene "sphere" is used:
-///
-///     photosurface render
-///     photosurface render --sheet --example cube -o cube.png
-///     photosurface render --example street --look 0,0,-1 -o street.png
-///     photosurface render --example cube --view outside --ghost rest,contracted --axes -o outside.png
+/// Without SCENE or MESH the built-in scene "sphere" is used.
 #[derive(Debug, clap::Args)]
-#[command(verbatim_doc_comment)]
+#[command(after_long_help = EXAMPLES)]
 pub(super) struct RenderArgs {
     #[command(flatten)]
     input: InputArgs,

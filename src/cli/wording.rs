@@ -5,10 +5,14 @@ use photosurface::PlacedScene;
 use photosurface::jobs::ExportError;
 use photosurface::write::{Format, WriteError};
 
+use super::file_camera::flagged;
+
 /// The error with the flags that the settings come from.
 pub(super) fn in_words_of_flags(error: ExportError) -> anyhow::Error {
     match error {
         ExportError::NoTime => anyhow!("--animate: a .ply has no time, expected .glb or .gltf"),
+        ExportError::NoCamera => anyhow!("--camera: a .ply has no camera, expected .glb or .gltf"),
+        ExportError::Framing(error) => flagged(error),
         ExportError::OneStep => anyhow!(
             "--animate: the scene has one step, expected at least two, such as --steps -6..6/7"
         ),

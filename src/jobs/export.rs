@@ -4,13 +4,15 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::clock::Clock;
+use super::file_camera::file_camera;
 use super::files::{check_outputs, file_for_each_step, with_suffix};
 use super::vertex_colors::{LightNote, VertexColors};
 use super::work::Work;
 use super::{ExportError, ExportSettings, Fitted, Progress, Tally};
+use crate::material::Part;
 use crate::pipeline::{PlacedScene, SurfaceOptions};
 use crate::scene::Tolerance;
-use crate::write::{Format, Report, WriteError, replaced_data, write_whole};
+use crate::write::{Format, ObserverCamera, Report, WriteError, replaced_data, write_whole};
 
 /// The result of an export at one level of detail.
 #[derive(Clone, Debug)]
@@ -82,6 +84,9 @@ pub struct ExportLevel {
     /// One file for each step, or one for all steps.
     files: Vec<PathBuf>,
     report: Option<PathBuf>,
+    camera: Option<ObserverCamera>,
+    /// Whether the camera would see the marker.
+    sees_marker: bool,
 }
 
 /// The levels of detail of an export in a given format. This function splits [`export`] into stages, for callers that
@@ -97,6 +102,11 @@ pub fn export_levels(
     path: &Path,
 ) -> Result<Vec<ExportLevel>, ExportError> {
     settings.check(placed, format)?;
+    let camera = settings.camera.as_ref();
+    let camera = camera
+        .map(|camera| file_camera(placed, camera))
+        .transpose()?;
+    let (camera, sees_marker) = camera.map_or((None, false), |(camera, sees)| (Some(camera), sees));
     let level = |placed: PlacedScene, suffix: &str| {
         let path = with_suffix(path, suffix);
         ExportLevel {
@@ -109,6 +119,8 @@ pub fn export_levels(
                 .as_ref()
                 .map(|report| with_suffix(report, suffix)),
             settings: settings.clone(),
+            camera: camera.clone(),
+            sees_marker,
             placed,
             format,
         }
@@ -144,6 +156,12 @@ impl ExportLevel {
     /// The placed scene with the tolerances of this level.
     pub fn placed(&self) -> &PlacedScene {
         &self.placed
+    }
+
+    /// The observer's marker in the files: none if the scene has none, or if it would hide everything from a camera
+    /// in the file, because objects are as near as the marker is large.
+    pub fn marker(&self) -> Option<&Part> {
+        self.placed.marker().filter(|_| !self.sees_marker)
     }
 
     /// The files with photosurfaces that will be written.
@@ -300,11 +318,16 @@ impl FittedExport {
             wanted: self.wanted,
             format: level.format,
             playback: level.settings.playback,
+            camera: level.camera.as_ref(),
+            marker: level.marker(),
             progress,
             colors: VertexColors::new(placed, &level.settings.textures),
             clock: self.clock.resumed(),
             tally: Tally::default(),
             facts: (level.settings.keep_facts || has_report).then(Vec::new),
+            provenance: &level.settings.provenance,
+            has_times: level.settings.report_times,
+            outputs: vec![],
             data_files: vec![],
         }
     }

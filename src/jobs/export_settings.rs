@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use super::framing::{CameraSettings, FramingError};
 use super::vertex_colors::VertexColors;
 use super::{DEFAULT_MAX_TRIANGLES, OutputError};
 use crate::pipeline::PlacedScene;
 use crate::render::Textures;
 use crate::scene::Tolerance;
-use crate::write::{FRAMES_PER_SECOND, Format, Playback, StageTime, WriteError};
+use crate::write::{FRAMES_PER_SECOND, Format, Playback, Provenance, StageTime, WriteError};
 
 /// Settings for the export of a placed scene.
 #[derive(Clone, Debug)]
@@ -18,6 +19,8 @@ pub struct ExportSettings {
     pub split: bool,
     /// How the steps of one file follow each other as an animation; with `None` all steps are visible at once.
     pub playback: Option<Playback>,
+    /// What the observer's camera in a glTF file shows of the sky; `None` for a file without a camera.
+    pub camera: Option<CameraSettings>,
     /// Levels of detail: tolerances for all objects, each with files of its own, `out_lod0.glb`, `out_lod1.glb`, ...;
     /// if there are none, the tolerances of the scene are used.
     pub levels: Vec<Tolerance>,
@@ -33,6 +36,10 @@ pub struct ExportSettings {
     /// Whether [`Exported`](super::Exported) holds the facts about every photosurface. Their memory grows with the number of
     /// photosurfaces.
     pub keep_facts: bool,
+    /// Whether the report has the times of the stages; without them it is the same on every run.
+    pub report_times: bool,
+    /// What the report says of files read and of the command.
+    pub provenance: Provenance,
     /// Stages that the caller has finished before the export, with their times, for the report.
     pub stages_before: Vec<StageTime>,
     /// The textures whose colours become those of vertices if the scene calls for the Doppler effect.
@@ -45,11 +52,14 @@ impl Default for ExportSettings {
         Self {
             split: false,
             playback: None,
+            camera: None,
             levels: vec![],
             subdivide: true,
             max_triangles: DEFAULT_MAX_TRIANGLES,
             report: None,
             keep_facts: true,
+            report_times: true,
+            provenance: Provenance::default(),
             stages_before: vec![],
             textures: Textures::default(),
         }
@@ -66,6 +76,12 @@ pub enum ExportError {
     /// An animation is asked for in a format that cannot hold one.
     #[error("a .ply has no time, expected .glb or .gltf for an animation")]
     NoTime,
+    /// A camera is asked for in a format that cannot hold one.
+    #[error("a .ply has no camera, expected .glb or .gltf for one")]
+    NoCamera,
+    /// No camera has the objects in its picture.
+    #[error(transparent)]
+    Framing(#[from] FramingError),
     /// An animation is asked for, but the scene has only one step.
     #[error("the scene has one step, expected at least two for an animation")]
     OneStep,
@@ -122,6 +138,9 @@ impl ExportError {
 impl ExportSettings {
     /// Checks that the playback is possible with the format, the scene and the other settings.
     pub(super) fn check(&self, placed: &PlacedScene, format: Format) -> Result<(), ExportError> {
+        if self.camera.is_some() && format == Format::Ply {
+            return Err(ExportError::NoCamera);
+        }
         let Some(playback) = self.playback else {
             return Ok(());
         };

@@ -2,6 +2,7 @@
 
 mod ahead;
 mod budget;
+mod check;
 mod clock;
 #[cfg(feature = "plot")]
 mod diagram;
@@ -12,6 +13,7 @@ mod export;
 mod export_settings;
 mod exposure;
 mod extent;
+mod file_camera;
 mod files;
 mod framing;
 mod grid;
@@ -37,6 +39,7 @@ mod work;
 #[cfg(feature = "plot")]
 pub use crate::plot::{PlotError, PlotSize};
 pub use budget::{DEFAULT_MAX_TRIANGLES, Fitted};
+pub use check::{Check, CheckedEffect, CheckedLevel, CheckedObject, CheckedStep, CheckedTriangles};
 #[cfg(feature = "plot")]
 pub use diagram::{
     DiagramError, DiagramMoment, DiagramPoint, DiagramSettings, DiagramTick, Emission, PointLine,

@@ -1,6 +1,6 @@
 //! Makes photosurfaces and writes them one after the other, in any format.
 
-use std::io::Write;
+use std::io::{self, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -8,10 +8,11 @@ use super::ahead::in_order;
 use super::clock::Clock;
 use super::vertex_colors::{LightNote, VertexColors};
 use super::{Cancelled, Progress, Tally};
+use crate::material::Part;
 use crate::pipeline::{Facts, Photosurface, PlacedScene, SurfaceOptions};
 use crate::write::{
-    Export, Format, GltfFile, GltfOutput, Playback, Report, Target, WriteError, write_ply,
-    write_whole, write_whole_gltf, write_whole_target,
+    Export, Format, GltfFile, GltfOutput, ObserverCamera, OutputFile, Playback, Provenance, Report,
+    Target, WriteError, write_ply, write_whole, write_whole_gltf, write_whole_target,
 };
 
 /// An export at work: its settings, and the totals and facts of the photosurfaces made so far.
@@ -20,6 +21,9 @@ pub(super) struct Work<'a> {
     pub(super) wanted: SurfaceOptions,
     pub(super) format: Format,
     pub(super) playback: Option<Playback>,
+    pub(super) camera: Option<&'a ObserverCamera>,
+    /// The observer's marker, if the file has one.
+    pub(super) marker: Option<&'a Part>,
     pub(super) progress: &'a dyn Progress,
     /// What colours vertices, if the scene calls for it.
     pub(super) colors: Option<VertexColors<'a>>,
@@ -27,6 +31,12 @@ pub(super) struct Work<'a> {
     pub(super) tally: Tally,
     /// The facts about every photosurface, if they are to be kept.
     pub(super) facts: Option<Vec<Facts>>,
+    /// What the photosurfaces are made of.
+    pub(super) provenance: &'a Provenance,
+    /// Whether the report has the times of the stages.
+    pub(super) has_times: bool,
+    /// The files written so far, with their lengths.
+    pub(super) outputs: Vec<OutputFile>,
     /// Data files that belong to `.gltf` files.
     pub(super) data_files: Vec<PathBuf>,
 }
@@ -92,8 +102,10 @@ impl Work<'_> {
     /// Writes a GLB or both files of a `.gltf`.
     fn gltf(&mut self, steps: Range<usize>, output: GltfOutput<'_>) -> Result<(), WriteError> {
         let (scene, attributes) = (self.placed.facts(), self.wanted.attributes);
-        let marker = self.placed.marker();
-        let mut file = GltfFile::new(output, &scene, marker, attributes, self.playback)?;
+        let mut file = GltfFile::new(output, &scene, self.marker, attributes, self.playback)?;
+        if let Some(camera) = self.camera {
+            file.set_camera(camera.clone());
+        }
         self.fill(&mut file, steps)?;
         file.finish()?;
         self.clock.stop("write");
@@ -121,7 +133,7 @@ impl Work<'_> {
         let photosurfaces: Vec<_> = photosurfaces.map(|made| self.finished(made)).collect();
         let export = Export {
             scene: &placed.facts(),
-            marker: placed.marker(),
+            marker: self.marker,
             photosurfaces: &photosurfaces,
             playback: None,
         };
@@ -139,22 +151,55 @@ impl Work<'_> {
     ) -> Result<(), WriteError> {
         match self.format {
             Format::Glb => write_whole_target(path, |target| {
-                self.glb(steps, target)?;
+                let bytes = match target {
+                    Target::File { file, directory } => {
+                        let target = Target::File {
+                            file: &mut *file,
+                            directory,
+                        };
+                        self.glb(steps, target)?;
+                        file.metadata()?.len()
+                    }
+                    Target::Stream(out) => {
+                        let mut out = Counted::new(out);
+                        self.glb(steps, Target::Stream(&mut out))?;
+                        out.bytes
+                    }
+                };
+                self.has_written(path, bytes);
                 before_it_appears(self)
             }),
             Format::Ply => write_whole(path, |writer| {
-                self.ply(steps, writer)?;
+                let mut out = Counted::new(writer);
+                self.ply(steps, &mut out)?;
+                let bytes = out.bytes;
+                self.has_written(path, bytes);
                 before_it_appears(self)
             }),
             Format::Gltf => {
-                let data = write_whole_gltf(path, |output| {
+                let content = |output: GltfOutput<'_>| {
                     self.gltf(steps, output)?;
-                    before_it_appears(self)
-                })?;
-                self.data_files.push(data);
+                    Ok(self)
+                };
+                let written = |work: &mut Self, files: [(PathBuf, u64); 2]| {
+                    for (file, bytes) in &files {
+                        work.has_written(file, *bytes);
+                    }
+                    let [_, (data, _)] = files;
+                    work.data_files.push(data);
+                    before_it_appears(work)
+                };
+                write_whole_gltf(path, content, written)?;
                 Ok(())
             }
         }
+    }
+
+    fn has_written(&mut self, file: &Path, bytes: u64) {
+        self.outputs.push(OutputFile {
+            file: file.display().to_string(),
+            bytes,
+        });
     }
 
     /// Writes some steps to a stream, as a PLY if that is the format, otherwise as a GLB.
@@ -163,10 +208,14 @@ impl Work<'_> {
         out: &mut dyn Write,
         steps: Range<usize>,
     ) -> Result<(), WriteError> {
+        let mut out = Counted::new(out);
         match self.format {
-            Format::Ply => self.ply(steps, out),
-            Format::Glb | Format::Gltf => self.glb(steps, Target::Stream(out)),
+            Format::Ply => self.ply(steps, &mut out)?,
+            Format::Glb | Format::Gltf => self.glb(steps, Target::Stream(&mut out))?,
         }
+        let bytes = out.bytes;
+        self.has_written(Path::new("-"), bytes);
+        Ok(())
     }
 
     /// What is to be said of light and colours that files do not hold as pictures do.
@@ -184,7 +233,36 @@ impl Work<'_> {
         Report {
             scene: self.placed.facts(),
             objects: self.facts.take().unwrap_or_default(),
-            stages: self.clock.stages().to_vec(),
+            stages: match self.has_times {
+                true => self.clock.stages().to_vec(),
+                false => vec![],
+            },
+            provenance: self.provenance.clone(),
+            outputs: std::mem::take(&mut self.outputs),
         }
+    }
+}
+
+/// A stream, and how many bytes it has taken.
+struct Counted<'a> {
+    out: &'a mut dyn Write,
+    bytes: u64,
+}
+
+impl<'a> Counted<'a> {
+    fn new(out: &'a mut dyn Write) -> Self {
+        Self { out, bytes: 0 }
+    }
+}
+
+impl Write for Counted<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.out.write(bytes)?;
+        self.bytes += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
     }
 }

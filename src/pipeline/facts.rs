@@ -3,16 +3,17 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
-use super::MomentFacts;
+use super::{Bounds, MomentFacts};
 use crate::scene::Scene;
 use crate::spacetime::{Integrator, Rotation, Segment, Steering, ViewModel};
 use crate::tessellate::Certificate;
 
 /// The facts about a photosurface, the same in files and in the report.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Facts {
     /// The name of the photosurface in files: unique there, and without characters that a reading program replaces.
     pub name: String,
@@ -29,6 +30,7 @@ pub struct Facts {
     pub part: String,
     /// The `extras` of the part in the source, unchanged.
     #[serde(skip_serializing_if = "Option::is_none", serialize_with = "as_it_is")]
+    #[schemars(with = "Option<Value>")]
     pub source: Option<Arc<Value>>,
     /// The light of the object if it is a black body, as scenes write it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -48,6 +50,11 @@ pub struct Facts {
     pub vertices: usize,
     /// Number of triangles.
     pub triangles: usize,
+    /// The box around the vertices, in the observer's frame, before files move the photosurface beside others.
+    pub bounds: Bounds,
+    /// The tolerance that was asked for, as flags write it: `0.001`, `abs:0.01`, `deg:0.02`. The certificate has its
+    /// length or angle.
+    pub tolerance: String,
     /// How many times, at most, the photosurface map magnifies an error of the source's coordinates in the rest frame:
     /// the largest stretch at a vertex, from 1 to `exp(rapidity)`. For example, the `f32` coordinates of a source of
     /// size 1 are known to `6e-8`; with a condition of 2000 its photosurface is known to `1.2e-4`. The certificate does
@@ -62,7 +69,7 @@ fn as_it_is<S: Serializer>(source: &Option<Arc<Value>>, serializer: S) -> Result
 }
 
 /// The facts about the scene, the same in files and in the report.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SceneFacts {
     /// The scene's title.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -106,7 +113,7 @@ pub struct SceneFacts {
 }
 
 /// A segment of a flight, as scenes write it, in scene units.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SegmentFacts {
     /// Duration in the observer's proper time.
     pub proper_time: f64,

@@ -1,5 +1,6 @@
 //! The pipeline: it makes the photosurface of every part at every step from a scene and its models.
 
+mod bounds;
 mod budget;
 mod certifying;
 mod error;
@@ -21,6 +22,7 @@ mod surface_options;
 mod together;
 mod vertex_data;
 
+pub use bounds::Bounds;
 pub use budget::Prediction;
 pub use error::PlacedSceneError;
 pub use facts::{Facts, SceneFacts, SegmentFacts};

@@ -1,11 +1,12 @@
 //! The facts about an observer at one instant.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::spacetime::{Event, Flight};
 
 /// What an observer is at one instant, in the scene frame: c = 1, lengths and times in scene units.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MomentFacts {
     /// The observer's proper time, counted from the observation event.
     pub proper_time: f64,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use serde_json::Value;
 
+use super::Bounds;
 use super::facts::{Facts, SceneFacts};
 use super::making::{Surface, make};
 use super::names::{self, UniqueNames, step_label};
@@ -352,6 +353,8 @@ impl PlacedScene {
             relative_rapidity: relative.rapidity(),
             vertices: surface.seen.mesh.positions().len(),
             triangles: surface.seen.mesh.triangles().len(),
+            bounds: Bounds::new(surface.seen.mesh.bounds().unwrap_or_default()),
+            tolerance: self.scene.tolerance(object).to_flag(),
             condition: surface.seen.condition(shown),
             beside: (beside != DVec3::ZERO).then(|| beside.to_array()),
             certificate: surface.certificate,

@@ -8,6 +8,7 @@ use serde_json::Value;
 use thiserror::Error;
 
 use super::Scene;
+use super::nearest::with_nearest;
 
 /// Why a text is not a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -153,6 +154,7 @@ fn scene_error(json: &str, error: &serde_json::Error, at: &str, kind: &str) -> S
     let text = error.to_string();
     let suffix = format!(" at line {line} column {column}");
     let message = in_words_of_scenes(text.strip_suffix(&suffix).unwrap_or(&text), kind);
+    let message = with_nearest(message);
     let whole = at_end(json, message);
     SceneError {
         // "." is the whole scene, "?" a place inside a value that was never begun.

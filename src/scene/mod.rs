@@ -14,6 +14,7 @@ mod json;
 mod lamp;
 mod lamp_form;
 mod marker;
+mod nearest;
 mod object;
 mod observer;
 mod orientation;

@@ -72,6 +72,16 @@ impl Default for Tolerance {
 }
 
 impl Tolerance {
+    /// The tolerance as flags write it, with all digits: `0.001`, `abs:0.01`, `deg:0.02`.
+    pub fn to_flag(self) -> String {
+        let unit = match self.unit {
+            Unit::Relative => "",
+            Unit::Absolute => "abs:",
+            Unit::Degrees => "deg:",
+        };
+        format!("{unit}{:?}", self.number)
+    }
+
     /// So many of a unit.
     ///
     /// # Errors

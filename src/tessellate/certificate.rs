@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use super::stretch::local_stretch;
@@ -17,10 +18,11 @@ const UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 ///
 /// Lengths are in the observer's frame; where the tolerance is an angle, `tolerance`, `gap`, `curvature`,
 /// `rounding` and `total` are angles seen by the observer, in degrees.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Certificate {
     /// Unit of the tolerance and of all bounds: a length in the observer's frame, or degrees.
     #[serde(serialize_with = "name")]
+    #[schemars(with = "String", extend("enum" = ["length", "fraction", "degrees"]))]
     pub unit: Unit,
     /// The tolerance that was asked for.
     pub tolerance: f64,

@@ -25,7 +25,8 @@ pub(crate) const FRAMES_PER_SECOND: RangeInclusive<f64> = 1e-3..=1e3;
 /// How the steps of a scene are shown one after another, in glTF.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Playback {
-    /// Each photosurface is a node, which is there during its frame: its scale is 1, and 0 else.
+    /// Each photosurface is a node, and those of a step have one parent, which is there during its frame: its scale is
+    /// 1, and 0 else.
     Frames {
         /// Steps in a second, from 0.001 to 1000.
         frames_per_second: f64,

@@ -1,5 +1,6 @@
 //! Photosurfaces as files: glTF, GLB, PLY, and the JSON report.
 
+mod camera;
 mod error;
 mod export;
 mod file;
@@ -13,6 +14,7 @@ mod report;
 mod size;
 mod text;
 
+pub use camera::ObserverCamera;
 pub use error::WriteError;
 pub(crate) use export::FRAMES_PER_SECOND;
 pub use export::{Export, Playback};
@@ -21,4 +23,5 @@ pub use file::{Target, abandon_writes, destination, write_whole, write_whole_tar
 pub use format::Format;
 pub use gltf::{GltfFile, GltfOutput, replaced_data, write_glb, write_gltf, write_whole_gltf};
 pub use ply::write_ply;
-pub use report::{Report, StageTime};
+pub(crate) use report::schema_of;
+pub use report::{OutputFile, Provenance, Report, StageTime};

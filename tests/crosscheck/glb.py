@@ -16,7 +16,7 @@ WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
 @dataclass
 class Node:
-    """A node of the scene with its mesh's only primitive."""
+    """A node of the scene with its mesh's only primitive; the node above it, if there is one, moves nothing."""
 
     name: str
     json: dict
@@ -65,7 +65,7 @@ class Gltf:
             self.json = json.loads(data)
             (buffer,) = self.json["buffers"]
             self._buffer = (path.parent / buffer["uri"]).read_bytes()
-        self.nodes = [self._node(node) for node in self.json["nodes"]]
+        self.nodes = [self._node(node) for node in self.json["nodes"] if "mesh" in node]
 
     def at_step(self, step):
         """Everything that is to be seen at a step of an animation: positions in the observer's frame, by name."""

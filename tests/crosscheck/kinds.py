@@ -42,6 +42,7 @@ PLAYING = {
     for flag, words in [("--animate", "frames"), ("--animate=morph", "morph targets")]
     for name, kind in {
         "steps": lambda flag: scene(PASSING, flag),
+        "steps with a camera": lambda flag: scene(PASSING, flag, "--camera", "--track"),
         "a hierarchy with a texture": lambda flag: mesh(write_hierarchy, flag, steps=range(7)),
         "an OBJ with materials": lambda flag: mesh(write_obj, flag, steps=range(7)),
     }.items()
@@ -51,6 +52,7 @@ PLAYING = {
 KINDS = {
     "one step": scene(TORUS),
     "several steps": scene(SPHERE),
+    "a camera for each step": scene(PASSING, "--camera"),
     "a file for each step": split(SPHERE),
     "a buffer of its own": scene(CUBE, to="out.gltf"),
     "marker and checker": scene(SEVERAL),

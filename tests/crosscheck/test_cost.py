@@ -45,7 +45,7 @@ def test_the_memory_of_a_study_is_that_of_an_export(tmp_path):
     peak_bytes(
         tmp_path,
         *("cost", scene, "--only", "meshes", "--tolerances", "1e-2"),
-        *("--repeats", 1, "--samples", 1, "-q", "--json", study),
+        *("--repeats", 1, "--places", 1, "-q", "--json", study),
     )
     (row,) = json.loads(study.read_text())["meshes"]
     assert row["made"]["file_bytes"] == mesh.stat().st_size

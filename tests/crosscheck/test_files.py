@@ -27,17 +27,37 @@ def test_bounds_are_exact(scene, export):
 
 
 def test_the_structure_is_plain(scene, export):
-    """One scene of flat nodes that only translate, core glTF, names that every program keeps."""
-    json = glb.Gltf(export(scene)).json
+    """One scene of meshes that only translate, those of each of several steps below one node; core glTF, names that every
+    program keeps."""
+    document = glb.Gltf(export(scene))
+    json = document.json
     assert json["asset"]["version"] == "2.0"
     assert "extensionsUsed" not in json
     assert len(json["scenes"]) == 1
-    assert json["scenes"][0]["nodes"] == list(range(len(json["nodes"])))
+    steps = {node.extras["step"] for node in document.nodes if "extras" in node.json}
+    parents = [node for node in json["nodes"] if "mesh" not in node]
+    times = json["scenes"][0]["extras"]["steps"]
+    expected = [
+        {
+            "name": f"step{step:03}",
+            "children": [
+                index for index, node in enumerate(json["nodes"]) if "mesh" in node and node.get("extras", {}).get("step") == step
+            ],
+            "extras": {"step": step, "proper_time": times[step]},
+        }
+        for step in sorted(steps if len(steps) > 1 else [])
+    ]
+    assert parents == expected
+    below = {child for parent in parents for child in parent["children"]}
+    roots = [index for index in range(len(json["nodes"])) if index not in below]
+    assert json["scenes"][0]["nodes"] == roots
     names = [node["name"] for node in json["nodes"]]
     assert len(set(names)) == len(names)
     for node in json["nodes"]:
         # three.js drops or replaces these.
         assert not set(node["name"]) & set("[].:/") and not any(c.isspace() for c in node["name"])
+        if "mesh" not in node:
+            continue
         assert node["name"] == json["meshes"][node["mesh"]]["name"]
         assert node.keys() <= {"name", "mesh", "translation", "extras"}
     for mesh in json["meshes"]:

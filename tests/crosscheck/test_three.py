@@ -137,14 +137,14 @@ def test_animations_arrive_whole(read):
 
 def assert_animations_arrive(document, answer):
     """Every channel is a track with the same keys."""
-    tracks = {"scale": "scale", "weights": "morphTargetInfluences", "translation": "position"}
+    tracks = {"scale": "scale", "weights": "morphTargetInfluences", "translation": "position", "rotation": "quaternion"}
     animations = document.json.get("animations", [])
     assert [clip["name"] for clip in answer["animations"]] == [it["name"] for it in animations]
     for written, clip in zip(animations, answer["animations"], strict=True):
         for channel, track in zip(written["channels"], clip["tracks"], strict=True):
             sampler = written["samplers"][channel["sampler"]]
-            node = document.nodes[channel["target"]["node"]]
-            assert track["name"] == f"{node.name}.{tracks[channel['target']['path']]}"
+            node = document.json["nodes"][channel["target"]["node"]]
+            assert track["name"] == f"{node['name']}.{tracks[channel['target']['path']]}"
             assert track["interpolation"] == sampler.get("interpolation", "LINEAR")
             assert track["times"] == document.accessor(sampler["input"]).tolist()
             assert track["values"] == document.accessor(sampler["output"]).ravel().tolist()

@@ -61,6 +61,7 @@ mod import {
 
 mod export {
     mod animation;
+    mod camera;
     mod hard_properties;
     mod jobs;
     mod materials;
@@ -78,6 +79,7 @@ mod cli {
     mod accuracy;
     mod check;
     mod commands;
+    mod documents;
     mod faults;
     mod flags;
     mod flight;

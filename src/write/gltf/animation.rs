@@ -89,6 +89,7 @@ impl GltfFile<'_> {
             ..Layer::from(first)
         };
         let node = self.add_node(&layer, &meshes, &[], Some(extras))?;
+        self.step_nodes.add(None, node);
         let Some(playback) = self.playback() else {
             return Ok(());
         };
@@ -136,15 +137,24 @@ impl GltfFile<'_> {
         times: &[[f32; 1]],
         values: &[[f32; N]],
     ) -> Result<Keys, WriteError> {
-        let keys = Keys {
-            times: key_frames(&mut self.document, times)?,
-            values: key_frames(&mut self.document, values)?,
-        };
+        let keys = self.own_keys(times, values)?;
         self.tracks.keys.insert(name, keys);
         Ok(keys)
     }
 
-    fn track(
+    /// Keys that no other channel shares.
+    pub(super) fn own_keys<const N: usize>(
+        &mut self,
+        times: &[[f32; 1]],
+        values: &[[f32; N]],
+    ) -> Result<Keys, WriteError> {
+        Ok(Keys {
+            times: key_frames(&mut self.document, times)?,
+            values: key_frames(&mut self.document, values)?,
+        })
+    }
+
+    pub(super) fn track(
         &mut self,
         node: Index<json::Node>,
         property: animation::Property,

@@ -49,7 +49,7 @@ impl<T> List<T> {
         Ok(Index::new(self.length - 1))
     }
 
-    pub(super) fn len(&self) -> u32 {
+    fn len(&self) -> u32 {
         self.length
     }
 
@@ -64,7 +64,7 @@ impl<T> List<T> {
 
 /// A glTF file in the making.
 pub(super) struct Document<'a> {
-    pub(super) nodes: List<json::Node>,
+    nodes: List<json::Node>,
     meshes: List<json::Mesh>,
     animations: List<json::Animation>,
     accessors: List<json::Accessor>,

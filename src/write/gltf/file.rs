@@ -1,6 +1,7 @@
-//! Core glTF 2.0: one node, one mesh, one primitive for each photosurface.
+//! Core glTF 2.0: one node, one mesh, one primitive for each photosurface; in a file of several steps, an empty node above
+//! those of each step.
 //!
-//! Plain accessors, u32 indices, flat node tree, translations only: what Blender, MeshLab, trimesh,
+//! Plain accessors, u32 indices, translations only: what Blender, MeshLab, trimesh,
 //! pyvista and three.js all read alike. Data shared between steps (triangles, texture coordinates,
 //! colours, materials, images) is written once.
 
@@ -15,13 +16,14 @@ use serde_json::{Value, json};
 
 use super::document::{AccessorRole, Document};
 use super::materials::Materials;
+use super::step_nodes::StepNodes;
 use crate::material::Part;
 use crate::mesh::Mesh;
 use crate::pipeline::{Photosurface, PlacedSceneError, SceneFacts, step_label};
 use crate::scene::Attributes;
 use crate::write::layer::{Layer, Numbers, Scalar};
 use crate::write::pack::{Bounds, Packing};
-use crate::write::{Export, FRAMES_PER_SECOND, GltfOutput, Playback, WriteError};
+use crate::write::{Export, FRAMES_PER_SECOND, GltfOutput, ObserverCamera, Playback, WriteError};
 
 /// Writes one GLB.
 ///
@@ -78,6 +80,10 @@ pub struct GltfFile<'a> {
     pub(super) document: Document<'a>,
     pub(super) scene: SceneFacts,
     pub(super) tracks: super::tracks::Tracks,
+    pub(super) step_nodes: StepNodes,
+    pub(super) camera: Option<ObserverCamera>,
+    /// The list of cameras, once their nodes are there.
+    pub(super) described_camera: Option<Value>,
     materials: Materials,
     attributes: Attributes,
     playback: Option<Playback>,
@@ -105,12 +111,16 @@ impl<'a> GltfFile<'a> {
             document: Document::new(output),
             scene: scene.clone(),
             tracks: Default::default(),
+            step_nodes: StepNodes::default(),
+            camera: None,
+            described_camera: None,
             materials: Materials::default(),
             attributes,
             playback,
         };
         if let Some(marker) = marker {
-            file.add_layer(&Layer::from(marker))?;
+            let node = file.add_layer(&Layer::from(marker))?;
+            file.step_nodes.add(None, node);
         }
         Ok(file)
     }
@@ -124,9 +134,7 @@ impl<'a> GltfFile<'a> {
     pub fn add(&mut self, photosurface: &Photosurface) -> Result<(), WriteError> {
         self.check_step(photosurface)?;
         let node = self.add_layer(&Layer::from(photosurface))?;
-        if let Some(Playback::Frames { frames_per_second }) = self.playback {
-            self.show_during_its_frame(node, photosurface.facts.step, frames_per_second)?;
-        }
+        self.step_nodes.add(Some(photosurface.facts.step), node);
         Ok(())
     }
 
@@ -256,6 +264,14 @@ impl<'a> GltfFile<'a> {
     ///
     /// More than 4 GiB in a GLB, or the file cannot be written.
     pub fn finish(mut self) -> Result<(), WriteError> {
+        self.add_camera()?;
+        let step_nodes = std::mem::take(&mut self.step_nodes);
+        let roots = step_nodes.into_roots(&mut self.document, &self.scene.steps)?;
+        if let Some(Playback::Frames { frames_per_second }) = self.playback {
+            for (step, node) in roots.of_steps {
+                self.show_during_its_frame(node, step, frames_per_second)?;
+            }
+        }
         let mut scene_extras = json!(self.scene);
         if let Some(playback) = self.playback {
             let frames_per_second = playback.frames_per_second();
@@ -276,7 +292,7 @@ impl<'a> GltfFile<'a> {
         }
         let mut scene = json!({
             "extras": scene_extras,
-            "nodes": (0..self.document.nodes.len()).collect::<Vec<_>>(),
+            "nodes": roots.all,
         });
         if let Some(title) = &self.scene.title {
             scene["name"] = json!(title);
@@ -288,6 +304,9 @@ impl<'a> GltfFile<'a> {
         });
         if let Some(copyright) = self.scene.copyright() {
             others["asset"]["copyright"] = copyright.into();
+        }
+        if let Some(cameras) = self.described_camera {
+            others["cameras"] = cameras;
         }
         self.materials.write_into(&mut others, &views);
         self.document.finish(&others)

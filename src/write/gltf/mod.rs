@@ -1,6 +1,7 @@
 //! glTF 2.0, as GLB and in two files.
 
 mod animation;
+mod camera;
 mod convert;
 mod document;
 mod file;
@@ -8,6 +9,7 @@ mod glb;
 mod materials;
 mod output;
 mod pair;
+mod step_nodes;
 mod tracks;
 
 pub use file::{GltfFile, write_glb, write_gltf};

@@ -27,12 +27,16 @@ const MAX_SEARCHED: u64 = 1 << 30;
 /// whole, the data first, or nothing does. Where that replaces a `.gltf` that was written in the same way, its data is
 /// removed.
 ///
+/// `before_they_appear` gets the result of `content`, and the `.gltf` and its data with their lengths.
+///
 /// # Errors
 ///
-/// A file cannot be written, one that is there is read-only, the name is not UTF-8, or `content` fails.
-pub fn write_whole_gltf(
+/// A file cannot be written, one that is there is read-only, the name is not UTF-8, or `content` or
+/// `before_they_appear` fails.
+pub fn write_whole_gltf<T>(
     path: &Path,
-    content: impl FnOnce(GltfOutput<'_>) -> Result<(), WriteError>,
+    content: impl FnOnce(GltfOutput<'_>) -> Result<T, WriteError>,
+    before_they_appear: impl FnOnce(T, [(PathBuf, u64); 2]) -> Result<(), WriteError>,
 ) -> Result<PathBuf, WriteError> {
     let here = |source| io_error(path, source);
     let told = |error| match error {
@@ -60,12 +64,18 @@ pub fn write_whole_gltf(
         &mut data_writer,
         &mut name,
     );
-    content(output).map_err(told)?;
+    let made = content(output).map_err(told)?;
     data_writer.flush().map_err(here)?;
     json_writer.flush().map_err(here)?;
     drop((json_writer, data_writer));
 
     let binary = path.with_file_name(&name);
+    let length = |file: &mut File| file.metadata().map(|data| data.len()).map_err(here);
+    let lengths = [length(json.file())?, length(data.file())?];
+    before_they_appear(
+        made,
+        [(path.to_owned(), lengths[0]), (binary.clone(), lengths[1])],
+    )?;
     let alone = alone_in(directory);
     let replaced = data_of(&place, stem).filter(|replaced| *replaced != name);
     persist_both((data, &binary), (json, &place)).map_err(here)?;

@@ -104,7 +104,7 @@ fn triangles_are_predicted() {
             let flags = format!("--example {scene} --tolerance {tolerance}");
             let check = workplace.run(&format!("check {flags}")).success();
             let last = check
-                .stdout_text()
+                .prediction()
                 .lines()
                 .last()
                 .unwrap_or_default()
@@ -145,7 +145,7 @@ fn no_tolerance_is_too_fine_to_predict() {
                 "{run}"
             );
             assert!(run.stderr.contains(" fits"), "{run}");
-            assert!(!predicted(run.stdout_text()).0[0].1, "{run}");
+            assert!(!predicted(run.prediction()).0[0].1, "{run}");
         }
         let run = workplace.run(&format!(
             "export --tolerance {tolerance} --max-triangles 30000 -o out.glb --report report.json"
@@ -185,7 +185,7 @@ fn a_hopeless_object_is_predicted_and_leaves_the_budget_to_the_others() {
     for flags in ["", "--max-triangles 30000"] {
         let check = workplace.run(&format!("check touched.json {flags}"));
         assert_eq!(check.status, 1, "{check}");
-        let (objects, _) = predicted(check.stdout_text());
+        let (objects, _) = predicted(check.prediction());
         let expected = [("floor", false), ("ball", true), ("box", true)];
         assert_eq!(
             objects,
@@ -207,7 +207,7 @@ fn a_hopeless_object_is_predicted_and_leaves_the_budget_to_the_others() {
     }
     // As they are, only what is small enough already is within the tolerance.
     let run = workplace.run("check touched.json --no-subdivide");
-    let kept: Vec<_> = predicted(run.stdout_text())
+    let kept: Vec<_> = predicted(run.prediction())
         .0
         .into_iter()
         .map(|(_, kept)| kept)
@@ -313,7 +313,7 @@ fn whether_an_angle_can_be_kept_is_predicted() {
     ] {
         workplace.write("scene.json", scene(shape, more));
         let check = workplace.run("check scene.json");
-        let (objects, _) = predicted(check.stdout_text());
+        let (objects, _) = predicted(check.prediction());
         let run = workplace.run("export scene.json -o out.glb");
         let status = i32::from(!kept);
         assert_eq!(
@@ -398,7 +398,7 @@ fn what_an_observer_in_a_plane_asks_for_is_predicted() {
                 "plate.obj --beta 0.9 --direction 1,0,0 --observer {observer} --tolerance {tolerance}"
             );
             let check = workplace.run(&format!("check {flags}"));
-            let (_, predicted) = check.stdout_text().rsplit_once("about ").expect("a count");
+            let (_, predicted) = check.prediction().rsplit_once("about ").expect("a count");
             let digits: String = predicted.chars().filter(char::is_ascii_digit).collect();
             let predicted: f64 = digits.parse().expect("a count");
             workplace.run(&format!("export {flags} -o out.glb --report report.json"));
@@ -436,7 +436,7 @@ fn a_budget_of_the_predicted_triangles_loosens_nothing() {
     for (example, tolerance) in [("cube", "1e-2"), ("sphere", "1e-3"), ("street", "1e-3")] {
         let flags = format!("--example {example} --tolerance {tolerance}");
         let check = workplace.run(&format!("check {flags}")).success();
-        let text = check.stdout_text().replace(',', "");
+        let text = check.prediction().replace(',', "");
         let words: Vec<&str> = text.split_whitespace().collect();
         let about = words.iter().rposition(|word| *word == "about").unwrap();
         let budget = words[about + 1].parse::<u64>().unwrap() + 1;

@@ -28,8 +28,8 @@ fn counts_and_sizes_are_told_as_people_say_them() {
     assert_eq!(run.stderr, summary, "{run}");
     let run = workplace.run("check one.obj -q").success();
     assert!(
-        run.stdout_text()
-            .ends_with("1 step: 1 photosurface, about 1 triangle\n"),
+        run.prediction()
+            .ends_with("1 step: 1 photosurface, about 1 triangle"),
         "{run}"
     );
     let run = workplace.run("check one.obj -v").success();

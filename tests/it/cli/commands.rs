@@ -287,7 +287,7 @@ fn what_this_program_wrote_is_noted_by_every_command() {
         "export seen.glb -o out.glb",
         "check seen.glb",
         "render seen.glb --size 16x9 -o out.png",
-        "cost seen.glb --only meshes --tolerances 1e-1 --samples 9 --repeats 1",
+        "cost seen.glb --only meshes --tolerances 1e-1 --places 9 --repeats 1",
         "export scene.json -o out.glb",
     ] {
         let run = workplace.run(line).success();
@@ -504,7 +504,7 @@ fn the_same_bytes_on_every_run_and_with_any_number_of_threads() {
 #[test]
 fn every_command_computes_with_as_many_threads_as_it_is_told() {
     let workplace = Workplace::with_ball();
-    let flags = "cost ball.json --only meshes --tolerances 1e-1 --samples 9 --repeats 1 --json -";
+    let flags = "cost ball.json --only meshes --tolerances 1e-1 --places 9 --repeats 1 --json -";
     for threads in ["1", "3"] {
         let flags = format!("{flags} --threads {threads}");
         // The flag wins.

@@ -281,7 +281,7 @@ fn what_is_no_number_is_told_with_what_was_expected() {
         ("render --fov wide", ["--fov", "\"wide\" is not a number"]),
         ("render --samples 0", ["--samples", "expected 1 to 16"]),
         ("cost --repeats 0", ["--repeats", "expected at least 1"]),
-        ("cost --samples x", ["--samples", "expected a whole number"]),
+        ("cost --places x", ["--places", "expected a whole number"]),
         (
             "export --fps 1e300 --animate --steps 0,1",
             ["--fps is 1e300", "from 0.001 to 1000"],
@@ -351,8 +351,8 @@ fn a_flag_that_would_change_nothing_is_refused() {
             ["--fov is for pictures", "--only meshes"],
         ),
         (
-            "cost ball.json --only rays --samples 9",
-            ["--samples is for meshes", "--only rays"],
+            "cost ball.json --only rays --places 9",
+            ["--places is for meshes", "--only rays"],
         ),
         (
             "cost ball.json --only rays --tolerances 1",
@@ -366,4 +366,93 @@ fn a_flag_that_would_change_nothing_is_refused() {
         let line = format!("render ball.json {line} --tolerance 1e-1 --size 16x9 -o out.png");
         workplace.run(&line).success();
     }
+}
+
+/// Words that people try are no flags, and the error says which flag is meant.
+#[test]
+fn flags_that_people_try_are_told_the_flag_that_is_meant() {
+    let workplace = Workplace::with_ball();
+    for (line, tip) in [
+        ("export ball.json --speed 0.9", "did you mean --beta?"),
+        ("export ball.json --speed=0.9", "did you mean --beta?"),
+        ("export ball.json --out a.glb", "did you mean --output?"),
+        (
+            "render ball.json --resolution 64x64",
+            "did you mean --size?",
+        ),
+        ("check ball.json --tol 1e-3", "did you mean --tolerance?"),
+        ("flight ball.json --step 1", "did you mean --steps?"),
+        (
+            "export ball.json --tolerence 1e-3",
+            "did you mean --tolerance?",
+        ),
+        (
+            "cost ball.json --samples 9",
+            "did you mean --places or --pixel-samples?",
+        ),
+        ("export ball.json morph", "did you mean --animate=morph?"),
+        ("export ball.json --morph", "did you mean --animate?"),
+    ] {
+        workplace.run(line).error(&[tip]);
+    }
+    let run = workplace
+        .run("export ball.json --zzzzzz")
+        .error(&["--zzzzzz"]);
+    assert!(!run.stderr.contains("did you mean"), "{run}");
+    // The command has no such flag.
+    let run = workplace.run("check ball.json --resolution 9");
+    assert!(!run.stderr.contains("--size"), "{run}");
+}
+
+#[test]
+fn values_in_no_form_are_told_all_forms() {
+    let workplace = Workplace::with_ball();
+    let tolerance = ["like 1e-3", "abs:0.01", "deg:0.02"];
+    let steps = ["A,B,C like -1,0,2.5", "FROM..TO/COUNT like -6..6/7"];
+    for (line, forms) in [
+        ("--tolerance fine", &tolerance[..]),
+        ("--tolerance rel:1", &tolerance),
+        ("--lod 1e-2,abs:x", &tolerance),
+        ("--steps all", &steps),
+        ("--steps 1..2", &steps),
+        ("--velocity fast", &["X,Y,Z like 0,0.5,-0.9"]),
+        ("--orientation up", &["X,Y,Z,W like"]),
+    ] {
+        workplace
+            .run(&format!("check ball.json {line}"))
+            .error(forms);
+    }
+    for size in ["640", "axb"] {
+        let line = format!("render ball.json --size {size}");
+        workplace.run(&line).error(&["WxH like 1280x720"]);
+    }
+}
+
+#[test]
+fn unknown_keys_are_told_the_key_that_is_meant() {
+    let workplace = Workplace::with_ball();
+    let ball = String::from_utf8(workplace.read("ball.json")).expect("text");
+    for (right, wrong, tip) in [
+        ("\"radius\"", "\"raduis\"", "did you mean `radius`?"),
+        ("\"position\"", "\"pos\"", "did you mean `position`?"),
+        (
+            "\"tolerance\"",
+            "\"tolerence\"",
+            "did you mean `tolerance`?",
+        ),
+        ("\"sphere\"", "\"shpere\"", "did you mean `sphere`?"),
+        ("\"observer\"", "\"Observer\"", "did you mean `observer`?"),
+        ("\"direction\"", "\"dirction\"", "did you mean `direction`?"),
+    ] {
+        assert!(ball.contains(right));
+        workplace.write("wrong.json", ball.replacen(right, wrong, 1));
+        workplace
+            .run("check wrong.json")
+            .error(&["wrong.json", "unknown", "expected", tip]);
+    }
+    workplace.write("wrong.json", ball.replacen("\"radius\"", "\"zzzzzz\"", 1));
+    let run = workplace
+        .run("check wrong.json")
+        .error(&["unknown key `zzzzzz`"]);
+    assert!(!run.stderr.contains("did you mean"), "{run}");
 }

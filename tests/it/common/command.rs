@@ -174,6 +174,15 @@ impl Run {
         self
     }
 
+    /// What `check` predicts, without the table of places behind it.
+    #[track_caller]
+    pub(crate) fn prediction(&self) -> &str {
+        let tables = self.stdout_text().split_once("\n\n");
+        let (prediction, places) = tables.expect("two tables");
+        assert!(places.trim_start().starts_with("object"), "{self}");
+        prediction
+    }
+
     pub(crate) fn stdout_text(&self) -> &str {
         std::str::from_utf8(&self.stdout).expect("text")
     }
@@ -198,12 +207,12 @@ pub(crate) fn glb_json(bytes: &[u8]) -> Value {
     Glb::new(bytes).json
 }
 
-/// The names of all nodes of a GLB, in order.
+/// The names of all nodes of a GLB that have a mesh, in order.
 pub(crate) fn node_names(bytes: &[u8]) -> Vec<String> {
     let json = glb_json(bytes);
     let nodes = json["nodes"].as_array().expect("nodes");
-    nodes
-        .iter()
+    let with_mesh = nodes.iter().filter(|node| node.get("mesh").is_some());
+    with_mesh
         .map(|node| node["name"].as_str().expect("a name").to_owned())
         .collect()
 }

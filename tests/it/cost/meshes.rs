@@ -63,7 +63,7 @@ fn cost_follows_theory() {
     let tolerances = "--tolerances abs:1e-3,abs:1,abs:1e-1,abs:1e-2,abs:1e-4";
     let study = study(
         &workplace,
-        &format!("scene.json --samples 300000 {tolerances}"),
+        &format!("scene.json --places 300000 {tolerances}"),
     );
     assert_eq!(study["unit"], "absolute");
     assert_eq!(study["scene"]["title"], "A box ahead");
@@ -111,7 +111,7 @@ fn uniform_subdivision_needs_more_close_by() {
     workplace.write("scene.json", BOX_AHEAD);
     let study = study(
         &workplace,
-        "scene.json --samples 50000 --tolerances abs:1e-1,abs:1e-2,abs:1e-3",
+        "scene.json --places 50000 --tolerances abs:1e-1,abs:1e-2,abs:1e-3",
     );
     let mut carried_out = 0;
     for row in rows(&study) {
@@ -158,7 +158,7 @@ fn angles_are_proven_and_measured_as_angles() {
     workplace.write("scene.json", BOX_AHEAD);
     let study = study(
         &workplace,
-        "scene.json --samples 20000 --tolerances deg:1,deg:0.1",
+        "scene.json --places 20000 --tolerances deg:1,deg:0.1",
     );
     assert_eq!(study["unit"], "angle_deg");
     for row in rows(&study) {
@@ -173,7 +173,7 @@ fn angles_are_proven_and_measured_as_angles() {
 fn built_in_scenes_keep_their_bounds() {
     let workplace = Workplace::new();
     for scene in ["sphere", "cube", "lattice", "street", "snapshot"] {
-        let flags = format!("--example {scene} --samples 20000 --tolerances 1e-2,1e-3");
+        let flags = format!("--example {scene} --places 20000 --tolerances 1e-2,1e-3");
         let study = study(&workplace, &flags);
         assert_eq!(study["unit"], "relative");
         for (row, tolerance) in rows(&study).iter().zip(["1e-2", "1e-3"]) {
@@ -190,7 +190,7 @@ fn built_in_scenes_keep_their_bounds() {
 fn table_csv_and_json_say_the_same() {
     let workplace = Workplace::new();
     workplace.write("scene.json", BOX_AHEAD);
-    let flags = "scene.json --only meshes --repeats 1 --samples 1000 --tolerances 1e-1,1e-2,1e-6 --max-triangles 20000";
+    let flags = "scene.json --only meshes --repeats 1 --places 1000 --tolerances 1e-1,1e-2,1e-6 --max-triangles 20000";
     let run = workplace.run(&format!("cost {flags} --json study.json --csv study.csv"));
     let run = run.success();
     assert!(
@@ -254,7 +254,7 @@ fn table_csv_and_json_say_the_same() {
 fn the_same_study_twice_differs_in_time_and_memory_alone() {
     let workplace = Workplace::new();
     let timeless = |threads: &str| {
-        let flags = "cost --example cube --tolerances 1e-2,1e-3 --samples 9000 --size 32x18 --pixel-samples 1,2 \
+        let flags = "cost --example cube --tolerances 1e-2,1e-3 --places 9000 --size 32x18 --pixel-samples 1,2 \
             --repeats 2 --json -";
         let run = workplace.run_with(flags, b"", &[("RAYON_NUM_THREADS", threads)]);
         let mut study: Value = serde_json::from_slice(&run.success().stdout).unwrap();
@@ -276,7 +276,7 @@ fn the_same_study_twice_differs_in_time_and_memory_alone() {
 #[test]
 fn plots_are_pictures_of_the_size_asked_for() {
     let workplace = Workplace::new();
-    let flags = "cost --example cube --tolerances 1e-1,1e-2 --samples 100 --size 32x18 --pixel-samples 1,2 --repeats 1";
+    let flags = "cost --example cube --tolerances 1e-1,1e-2 --places 100 --size 32x18 --pixel-samples 1,2 --repeats 1";
     workplace
         .run(&format!("{flags} --plot a.png --plot-size 640x480"))
         .success();
@@ -313,7 +313,7 @@ fn words_cover_neither_curves_nor_each_other_at_the_smallest_size() {
     let scene = workplace.run("example cube").success();
     let scene = scene.stdout_text().replace("A cube flies by", title);
     workplace.write("scene.json", scene);
-    let flags = "cost scene.json --tolerances 1e-1,1e-2,1e-3 --samples 100 --size 32x18 --pixel-samples 1,2 --repeats 1";
+    let flags = "cost scene.json --tolerances 1e-1,1e-2,1e-3 --places 100 --size 32x18 --pixel-samples 1,2 --repeats 1";
     workplace
         .run(&format!("{flags} --plot a.svg --plot-size 640x480"))
         .success();
@@ -380,7 +380,7 @@ fn what_cannot_be_plotted_is_told_all_the_same() {
 #[test]
 fn a_study_of_what_is_at_rest_says_so() {
     let workplace = Workplace::with_ball();
-    let line = "cost square.obj --only meshes --tolerances 1e-1 --samples 10 --repeats 1";
+    let line = "cost square.obj --only meshes --tolerances 1e-1 --places 10 --repeats 1";
     for (flags, is_said) in [("", true), ("--beta 0.5", false)] {
         let run = workplace.run(&format!("{line} {flags}")).success();
         let says = run
@@ -407,7 +407,7 @@ fn errors_name_the_flag() {
             ["--tolerances", "expected a finite number > 0"],
         ),
         ("--repeats 0", ["--repeats", "at least 1"]),
-        ("--samples 0", ["--samples", "at least 1"]),
+        ("--places 0", ["--places", "at least 1"]),
         ("--max-triangles -1", ["--max-triangles", "-1"]),
         ("--plot out.pdf", ["--plot", "expected .png or .svg"]),
         ("--plot-size 639x480", ["--plot-size", "at least 640 x 480"]),

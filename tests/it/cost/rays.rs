@@ -290,7 +290,8 @@ fn number(row: &Value, name: &str) -> f64 {
 #[test]
 fn table_csv_and_json_say_the_same() {
     let workplace = Workplace::new();
-    let flags = "--example sphere --steps=-2,0,1.5 --size 64x48 --repeats 2 --tolerances 1e-2 --samples 100";
+    let flags =
+        "--example sphere --steps=-2,0,1.5 --size 64x48 --repeats 2 --tolerances 1e-2 --places 100";
     let run = workplace.run(&format!("cost {flags} --json a.json --csv a.csv"));
     let run = run.success();
     assert_eq!(workplace.files(), ["a.csv", "a.json", "a_rays.csv"]);

@@ -155,9 +155,10 @@ fn each_frame_shows_its_step_alone() {
     let workplace = Workplace::new();
     let file = export(&workplace, "--animate --fps 10");
     let nodes = file.json["nodes"].as_array().unwrap();
-    assert_eq!(nodes.len(), 1 + 3 * 5);
+    assert_eq!(nodes.len(), 1 + 3 * 5 + 5);
+    // One channel for each step, not for each object at each step.
     let tracks = file.tracks();
-    assert_eq!(tracks.len(), 15);
+    assert_eq!(tracks.len(), 5);
     for frame in 0..5 {
         // A little after the beginning of the frame, for times are rounded.
         let now = frame as f32 / 10.0 + 0.01;
@@ -171,7 +172,12 @@ fn each_frame_shows_its_step_alone() {
                 assert!(scale == [0.0; 3] || scale == [1.0; 3]);
                 scale[0] == 1.0
             })
-            .map(|track| nodes[track.node]["name"].as_str().unwrap())
+            .flat_map(|track| nodes[track.node]["children"].as_array().unwrap())
+            .map(|child| {
+                nodes[child.as_u64().unwrap() as usize]["name"]
+                    .as_str()
+                    .unwrap()
+            })
             .collect();
         let expected = ["ball", "wall", "rod"].map(|name| format!("{name}_step00{frame}"));
         assert_eq!(

@@ -259,6 +259,10 @@ fn what_is_wrong_with_a_material_is_mended_and_named() {
 fn extras_of_nodes_and_meshes_travel() {
     let (after, _) = pass_through("lights_and_cameras.glb");
     let nodes = after.json["nodes"].as_array().expect("two steps");
+    let nodes: Vec<_> = nodes
+        .iter()
+        .filter(|node| node.get("mesh").is_some())
+        .collect();
     assert_eq!(nodes.len(), 2);
     for node in nodes {
         assert_eq!(

@@ -57,7 +57,9 @@ fn nodes(glb: &[u8]) -> Vec<Node> {
             corners: indices.into_iter().map(u32::from_le_bytes).collect(),
         }
     };
-    json["nodes"].as_array().unwrap().iter().map(node).collect()
+    let nodes = json["nodes"].as_array().unwrap().iter();
+    let with_mesh = nodes.filter(|node| node.get("mesh").is_some());
+    with_mesh.map(node).collect()
 }
 
 impl Node {

@@ -77,7 +77,7 @@ fn every_export_follows_the_flight() {
     assert_along_the_flight(
         nodes
             .iter()
-            .filter_map(|node| node["extras"].get("step").map(|_| &node["extras"])),
+            .filter_map(|node| node["extras"].get("object").map(|_| &node["extras"])),
         8,
     );
     for step in 0..4 {

@@ -58,6 +58,8 @@ pub fn export(bytes: &[u8]) {
             scene: placed.facts(),
             objects: facts.collect(),
             stages: vec![],
+            provenance: Default::default(),
+            outputs: vec![],
         };
         assert!(!report.to_json().is_empty());
         for photosurface in made.iter().flatten() {
