@@ -114,7 +114,7 @@ mod tests {
     fn the_axes_and_the_field_of_view_are_those_of_the_picture() {
         let size = PictureSize::new(160, 90).unwrap();
         for vertical_fov_deg in [1e-3, 60.0, 150.0] {
-            let projection = Projection::Pinhole { vertical_fov_deg };
+            let projection = Projection::Perspective { vertical_fov_deg };
             for look in [DVec3::NEG_Z, DVec3::new(1.0, 2.0, -3.0), DVec3::Y, DVec3::X] {
                 let camera = Camera::new(size, projection, look).unwrap();
                 let fov = vertical_fov_rad(&camera).to_degrees();
