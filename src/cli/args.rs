@@ -100,6 +100,11 @@ impl ObserverArgs {
         self.observer.is_some()
     }
 
+    /// Whether steps are given.
+    pub(super) fn has_steps(&self) -> bool {
+        self.steps.is_some()
+    }
+
     /// The file of the flight, which must not be written over.
     pub(super) fn file(&self) -> Option<&Path> {
         self.flight.as_deref()

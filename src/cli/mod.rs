@@ -12,6 +12,7 @@ mod drawing;
 mod effects;
 mod example;
 mod export;
+mod film;
 mod flight;
 mod flight_tables;
 mod guides;

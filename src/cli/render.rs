@@ -17,6 +17,7 @@ use super::accuracy::AccuracyArgs;
 use super::args::{InputArgs, ObserverArgs};
 use super::camera::{CameraArgs, Method, View};
 use super::effects::{EffectArgs, tell_of_ramp};
+use super::film::FilmArgs;
 use super::guides::GuideArgs;
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print};
@@ -33,6 +34,7 @@ use super::status::Status;
 ///     photosurface render
 ///     photosurface render --sheet --example cube -o cube.png
 ///     photosurface render --example street --look 0,0,-1 -o street.png
+///     photosurface render --example cube --film cube.gif
 ///     photosurface render --example cube --view outside --ghost rest,contracted --axes -o outside.png
 #[derive(Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
@@ -51,6 +53,8 @@ pub(super) struct RenderArgs {
     effects: EffectArgs,
     #[command(flatten)]
     accuracy: AccuracyArgs,
+    #[command(flatten)]
+    film: FilmArgs,
     /// Where to write a .png; each step gets its own file: out_step000.png, out_step001.png, ..., and those that
     /// are finished stay when it is interrupted; - for stdout [default: NAME_VIEW.png or NAME_sheet.png in this directory]
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
@@ -72,7 +76,11 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     );
     camera.refuse_unused(method, &args.accuracy.given())?;
     check_output(args.output.as_deref())?;
-    let input = Input::read(&args.input, &args.observer, verbosity)?;
+    let film = args.film.film()?;
+    let mut input = Input::read(&args.input, &args.observer, verbosity)?;
+    if let Some(film) = &film {
+        input.scene = film.scene(input.scene, args.observer.has_steps())?;
+    }
     let mut settings = camera.settings(method, input.is_mesh);
     let kind = match settings.view {
         PictureView::Sheet { .. } => "sheet",
@@ -85,7 +93,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     };
     let steps = input.scene.steps().len();
     let models = args.models.side_by_side()?;
-    match models.len() {
+    let size = match models.len() {
         0 => settings
             .picture_size(steps)
             .context("--sheet: all steps side by side; choose fewer --steps or a smaller --size")?,
@@ -93,10 +101,13 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
             .context("--models: all models side by side; choose fewer, or a smaller --size")?,
     };
     ensure!(
-        settings.picture_count(steps) == 1 || !is_stdout(&path),
+        film.is_some() || settings.picture_count(steps) == 1 || !is_stdout(&path),
         "{steps} steps are as many pictures, they cannot all go to stdout; choose one with --steps"
     );
-    let files = settings.files(&path, steps);
+    let files = match &film {
+        Some(film) => vec![film.path.to_owned()],
+        None => settings.files(&path, steps),
+    };
     check_destinations(files.iter().cloned(), &input.files)?;
     let scene = args.models.scene(args.accuracy.scene(input.scene));
     let scene = args.effects.scene(scene);
@@ -117,8 +128,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     };
     let progress = Bar::new(0, "rows", verbosity);
     let textures = &input.textures;
-    let finished = |number: usize, picture: &Picture| write(&files[number], picture);
-    let rendered = match models {
+    let draw = |finished: &mut dyn FnMut(usize, &Picture) -> anyhow::Result<()>| match models {
         [] => {
             let placed = fitted(placed);
             photosurface::render(&placed, textures, &settings, &progress, finished)
@@ -127,6 +137,10 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
             let columns = columns(placed, models, fitted)?;
             render_side_by_side(&columns, textures, &settings, &progress, finished)
         }
+    };
+    let rendered = match &film {
+        Some(film) => film.record(size, steps, draw),
+        None => draw(&mut |number, picture| write(&files[number], picture)),
     };
     let rendered = rendered.map_err(|error| match error.downcast::<RenderError>() {
         Ok(error) => camera.flagged(error),
@@ -138,10 +152,13 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     tell_of_empty(&rendered.empty, views, camera, method, verbosity);
     tell_of_missing(&input.textures, &scene, verbosity);
     if !is_stdout(&files[0]) {
+        let pictures = match &film {
+            Some(_) => counted(steps, "frame"),
+            None => counted(files.len(), "picture"),
+        };
         verbosity.result(format_args!(
-            "{}: {}{}",
+            "{}: {pictures}{}",
             from_first_to_last(&files),
-            counted(files.len(), "picture"),
             legend(args)
         ));
     }

@@ -68,6 +68,7 @@ mod export {
 }
 
 mod render {
+    mod films;
     mod golden;
     mod lamps;
     mod one_call;
@@ -79,6 +80,7 @@ mod cli {
     mod check;
     mod commands;
     mod faults;
+    mod films;
     mod flags;
     mod flight;
     mod models;
