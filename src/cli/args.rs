@@ -5,11 +5,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, bail, ensure};
 use clap::Args;
-use photosurface::jobs::{MAX_SCENE_BYTES, text_of};
+use photosurface::jobs::{MAX_SCENE_BYTES, passage, text_of};
 use photosurface::read::{Access, read_whole};
 use photosurface::scene::{FlightPlan, MarkerRadius, Place, Rotation, Time, Units, even_steps};
 use photosurface::spacetime::Integrator;
-use photosurface::{DQuat, DVec3, Observer, Scene, Velocity};
+use photosurface::{DQuat, DVec3, Model, Observer, Scene, Velocity};
+
+use super::speeds::SpeedArgs;
 
 /// What to look at.
 #[derive(Debug, Args)]
@@ -44,18 +46,8 @@ impl InputArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Observer (overrides the scene)")]
 pub(super) struct ObserverArgs {
-    /// Speed of the observer in units of the speed of light, 0 <= B < 1
-    #[arg(long, value_name = "B", group = "speed", value_parser = number, allow_hyphen_values = true)]
-    beta: Option<f64>,
-    /// 1 - beta, for speeds too close to 1 for --beta, 0 < D <= 1
-    #[arg(long, value_name = "D", group = "speed", value_parser = number, allow_hyphen_values = true)]
-    one_minus_beta: Option<f64>,
-    /// Lorentz factor of the observer, G >= 1
-    #[arg(long, value_name = "G", group = "speed", value_parser = number, allow_hyphen_values = true)]
-    gamma: Option<f64>,
-    /// Rapidity of the observer, atanh(beta), from 0 to 350
-    #[arg(long, value_name = "R", group = "speed", value_parser = number, allow_hyphen_values = true)]
-    rapidity: Option<f64>,
+    #[command(flatten)]
+    speed: SpeedArgs,
     /// Direction of the observer's motion, a vector of any length. Without a speed it only changes the direction of the
     /// scene's velocity; a mesh without a scene is seen from that side, at rest [default for a mesh: 0,0,-1]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
@@ -75,24 +67,34 @@ pub(super) struct ObserverArgs {
     /// How the flight is computed: exact, or by Euler's method or that of Runge and Kutta with steps of so much proper time
     #[arg(long, value_name = "exact|euler:STEP|rk4:STEP", value_parser = integrator, allow_hyphen_values = true)]
     integrator: Option<Integrator>,
-    /// Place of the observation in the scene frame, in scene units [default for a mesh: two
-    /// bounding-box diagonals in front of its centre, so that the observer moves towards it]
+    /// Place of the observation in the scene frame, in scene units [default for a mesh: where the observer flies by with the
+    /// mesh on its right, two bounding-box diagonals from its centre]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     observer: Option<DVec3>,
     /// Scene time of the observation, in scene units [default for a mesh: 0]
     #[arg(long, value_name = "T", value_parser = number, allow_hyphen_values = true)]
     time: Option<f64>,
-    /// Proper times of the observer, counted from the observation: A,B,C or FROM..TO/COUNT [default for a mesh: 0]
-    #[arg(long, value_name = "A,B,C|FROM..TO/COUNT", value_parser = steps, allow_hyphen_values = true)]
+    /// Proper times of the observer, counted from the observation: A,B,C or FROM..TO/COUNT; or those of a passage, from the
+    /// approach of the objects over their closest pass to their departure: pass, or pass:COUNT [default for a mesh without
+    /// --observer: when its centre is seen at a right angle to the motion; on a sheet and in a film: pass]
+    #[arg(long, value_name = "A,B,C|FROM..TO/COUNT|pass", value_parser = steps, allow_hyphen_values = true)]
     steps: Option<Steps>,
     /// Radius of a small sphere that marks the observer, in scene units; 0 for none [default for a mesh: 0]
     #[arg(long, value_name = "R", value_parser = number, allow_hyphen_values = true)]
     marker: Option<f64>,
 }
 
-/// A list of steps as one value of a flag.
-#[derive(Clone, Debug)]
-pub(super) struct Steps(Vec<f64>);
+/// Steps as one value of a flag.
+#[derive(Clone, Debug, PartialEq)]
+enum Steps {
+    /// Proper times.
+    Times(Vec<f64>),
+    /// So many moments of a passage.
+    Pass(usize),
+}
+
+/// How many moments of a passage are looked at unless something else is said.
+pub(super) const PASSAGE: usize = 7;
 
 impl ObserverArgs {
     /// Whether a place for the observer is given.
@@ -100,9 +102,19 @@ impl ObserverArgs {
         self.observer.is_some()
     }
 
-    /// Whether steps are given.
-    pub(super) fn has_steps(&self) -> bool {
-        self.steps.is_some()
+    /// Whether steps are given that are the frames of a film, one by one; the moments of a passage are so only if they
+    /// have a count.
+    pub(super) fn has_frames(&self) -> bool {
+        match &self.steps {
+            None => false,
+            Some(Steps::Times(_)) => true,
+            Some(Steps::Pass(count)) => *count != PASSAGE,
+        }
+    }
+
+    /// Whether place and steps of the observer are left to the program, which makes an observer of a mesh fly by.
+    pub(super) fn flies_by(&self) -> bool {
+        self.observer.is_none() && self.steps.is_none()
     }
 
     /// The file of the flight, which must not be written over.
@@ -158,11 +170,28 @@ impl ObserverArgs {
             (None, Some(_)) => "--integrator".to_owned(),
             (None, None) => "the observer's flight".to_owned(),
         };
-        let scene = scene.with_observer(observer).with_context(place)?;
-        match &self.steps {
-            Some(Steps(steps)) => Ok(scene.with_steps(steps.clone()).context("--steps")?),
-            None => Ok(scene),
-        }
+        scene.with_observer(observer).with_context(place)
+    }
+
+    /// The scene, whose objects have these models, with the steps that the flags say.
+    pub(super) fn stepped(&self, scene: Scene, models: &[Model]) -> anyhow::Result<Scene> {
+        let steps = match &self.steps {
+            Some(Steps::Times(times)) => times.clone(),
+            Some(Steps::Pass(count)) => passage(&scene, models, *count).context("--steps")?,
+            None => return Ok(scene),
+        };
+        scene.with_steps(steps).context("--steps")
+    }
+
+    /// Several speeds of the observer of a scene, each with the words for a picture; none unless there are several.
+    pub(super) fn speeds(&self, observer: &Observer) -> anyhow::Result<Vec<(String, Velocity)>> {
+        let direction = self.direction.unwrap_or(observer.velocity.heading());
+        self.speed.several(direction)
+    }
+
+    /// Several speeds are an error where there is one observer.
+    pub(super) fn refuse_speeds(&self) -> anyhow::Result<()> {
+        self.speed.refuse_several()
     }
 
     fn velocity(&self, observer: &Observer) -> anyhow::Result<Velocity> {
@@ -174,23 +203,10 @@ impl ObserverArgs {
         if self.direction.is_some() {
             Velocity::from_rapidity(0.0, direction).context("--direction")?;
         }
-        if let Some(beta) = self.beta {
-            return Velocity::from_beta(beta, direction).context("--beta");
+        match self.speed.velocity(direction)? {
+            Some(velocity) => Ok(velocity),
+            None => Velocity::from_rapidity(scene.rapidity(), direction).context("--direction"),
         }
-        if let Some(one_minus_beta) = self.one_minus_beta {
-            return Velocity::from_one_minus_beta(one_minus_beta, direction)
-                .context("--one-minus-beta");
-        }
-        if let Some(gamma) = self.gamma {
-            return Velocity::from_gamma(gamma, direction).context("--gamma");
-        }
-        let rapidity = self.rapidity.unwrap_or(scene.rapidity());
-        let flag = if self.rapidity.is_some() {
-            "--rapidity"
-        } else {
-            "--direction"
-        };
-        Velocity::from_rapidity(rapidity, direction).context(flag)
     }
 }
 
@@ -240,22 +256,35 @@ fn read_flight(path: &Path, units: Option<Units>) -> anyhow::Result<FlightPlan> 
     FlightPlan::from_json(text, units).with_context(place)
 }
 
-/// `A,B,C` or `FROM..TO/COUNT`
+/// `A,B,C`, `FROM..TO/COUNT`, `pass` or `pass:COUNT`
 fn steps(text: &str) -> anyhow::Result<Steps> {
+    const FORMS: &str = "expected A,B,C like -1,0,2.5, or FROM..TO/COUNT like -6..6/7, or pass, or pass:COUNT like pass:9";
+    let whole = |text: &str| {
+        let count: usize = text.trim().parse().ok()?;
+        Some(count)
+    };
+    match text.trim().split_once(':') {
+        None if text.trim() == "pass" => return Ok(Steps::Pass(PASSAGE)),
+        Some(("pass", count)) => {
+            let count = whole(count)
+                .with_context(|| format!("\"{}\" is not a count, {FORMS}", count.trim()))?;
+            return Ok(Steps::Pass(count));
+        }
+        _ => {}
+    }
     let Some((from, rest)) = text.split_once("..") else {
-        return numbers(text).map(Steps);
+        return numbers(text).map(Steps::Times).context(FORMS);
     };
     let (to, count) = rest
         .split_once('/')
         .context("no count, expected FROM..TO/COUNT like -6..6/7")?;
-    let count = count.trim();
-    let count = count
-        .parse()
-        .with_context(|| format!("\"{count}\" is not a count (expected e.g. 7)"))?;
-    Ok(Steps(even_steps(number(from)?, number(to)?, count)?))
+    let count = whole(count)
+        .with_context(|| format!("\"{}\" is not a count (expected e.g. 7)", count.trim()))?;
+    Ok(Steps::Times(even_steps(number(from)?, number(to)?, count)?))
 }
 
-fn numbers(text: &str) -> anyhow::Result<Vec<f64>> {
+/// `A,B,C`
+pub(super) fn numbers(text: &str) -> anyhow::Result<Vec<f64>> {
     text.split(',').map(number).collect()
 }
 
@@ -327,10 +356,18 @@ mod tests {
                 .contains("\"x\" is not a number")
         );
         assert!(vector("1,2,inf").is_err());
-        assert_eq!(steps("-1,0.5").unwrap().0, [-1.0, 0.5]);
-        assert_eq!(steps("-6..6/3").unwrap().0, [-6.0, 0.0, 6.0]);
-        assert_eq!(steps("2").unwrap().0, [2.0]);
-        for wrong in ["", "1..2", "1..2/0", "1..2/x", "1..2/-1", "1,,2"] {
+        let times = |text| match steps(text).unwrap() {
+            Steps::Times(times) => times,
+            Steps::Pass(_) => vec![],
+        };
+        assert_eq!(times("-1,0.5"), [-1.0, 0.5]);
+        assert_eq!(times("-6..6/3"), [-6.0, 0.0, 6.0]);
+        assert_eq!(times("2"), [2.0]);
+        assert_eq!(steps("pass").unwrap(), Steps::Pass(PASSAGE));
+        assert_eq!(steps("pass:3").unwrap(), Steps::Pass(3));
+        for wrong in [
+            "", "1..2", "1..2/0", "1..2/x", "1..2/-1", "1,,2", "pass:", "pass:x", "past",
+        ] {
             assert!(steps(wrong).is_err(), "{wrong}");
         }
     }

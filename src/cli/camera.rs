@@ -1,14 +1,16 @@
 //! Flags that say what a picture shows and from where.
 
-use std::num::NonZeroU32;
+use std::num::{NonZeroU32, NonZeroUsize};
 
 use anyhow::{Context, anyhow, bail, ensure};
-use photosurface::jobs::{Aim, CameraSettings, FieldOfView, FramingError, RenderError};
+use photosurface::jobs::{
+    Aim, CameraSettings, FieldOfView, Follow, FramingError, PictureProjection, RenderError,
+};
 use photosurface::render::{CameraError, PictureSize};
 use photosurface::shape::Color;
 use photosurface::{DVec3, PictureMethod, PictureSettings, PictureView, Scene};
 
-use super::args::{Given, number, refuse, vector};
+use super::args::{Given, count, number, refuse, vector};
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Camera (places and directions are in the observer's frame)")]
@@ -23,13 +25,25 @@ pub(super) struct CameraArgs {
     /// Width and height of the picture in pixels, of each picture on a sheet [default: 1280x720, on a sheet 320x240]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<PictureSize>,
-    /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180 [default: 60, from outside
-    /// 30; the observer's on a sheet, and of a mesh without --look and --target, so that everything is in the picture]
+    /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180, or below 360 in stereographic
+    /// projection [default: so that everything is in the picture; 60 for an observer who flies, or whose axes are turned; 30
+    /// from outside]
     #[arg(long, value_name = "DEG", value_parser = number, allow_hyphen_values = true)]
     fov: Option<f64>,
-    /// Show the whole sky as a longitude-latitude map
-    #[arg(long, conflicts_with = "fov")]
-    pub(super) full_sky: bool,
+    /// How directions are laid out [default: perspective, but stereographic for the observer where everything in
+    /// perspective would be more than 100 degrees wide]
+    #[arg(long, value_enum)]
+    projection: Option<ProjectionName>,
+    /// Show the whole sky as a longitude-latitude map, twice as wide as high: --projection full-sky
+    #[arg(long, conflicts_with_all = ["fov", "projection"])]
+    full_sky: bool,
+    /// Aim the observer's camera at the middle of the objects at each step anew [default on a sheet]
+    #[arg(long, conflicts_with_all = ["hold", "look", "target"])]
+    track: bool,
+    /// Hold one direction for all steps: the middle of the whole passage, or the direction of motion if that is too wide for
+    /// a picture; an observer who flies looks along its own -z [default in several pictures and films]
+    #[arg(long)]
+    hold: bool,
     /// Direction in which the camera looks, of any length [default: towards the middle of the objects; for an observer
     /// who flies, or whose axes are turned, its own -z]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, conflicts_with = "target")]
@@ -41,10 +55,13 @@ pub(super) struct CameraArgs {
     /// is in the picture]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     from: Option<DVec3>,
-    /// Show all steps on one sheet, a column for each: above, what the observer sees, with its proper time; below, the
-    /// photosurface from outside, at one scale
+    /// Show all steps on one sheet: above, what the observer sees, with its proper time; below, the photosurface from
+    /// outside, at one scale
     #[arg(long, conflicts_with_all = ["view", "look", "target", "full_sky"])]
     pub(super) sheet: bool,
+    /// How many steps a sheet has beside each other [default: at most 8, in rows of about equal length]
+    #[arg(long, value_name = "N", value_parser = count, allow_hyphen_values = true, requires = "sheet")]
+    columns: Option<NonZeroUsize>,
     /// Show the photosurfaces of all steps in one picture (--view outside)
     #[arg(long, conflicts_with = "sheet")]
     pub(super) together: bool,
@@ -62,6 +79,16 @@ pub(super) enum View {
     Observer,
     /// From any other place
     Outside,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum ProjectionName {
+    /// Straight lines stay straight
+    Perspective,
+    /// Circles on the sky stay circles
+    Stereographic,
+    /// The whole sky in longitude and latitude
+    FullSky,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -88,6 +115,14 @@ impl CameraArgs {
         ensure!(
             outside || !self.together,
             "--together is for --view outside"
+        );
+        ensure!(
+            !outside || !(self.track || self.hold),
+            "--track and --hold are for the observer's camera; one from outside stands still"
+        );
+        ensure!(
+            self.fov.is_none() || !self.shows_full_sky(),
+            "--fov is for pictures of a part of the sky, --projection full-sky shows all of it"
         );
         match self.method {
             Some(Method::Rays) if outside => bail!(
@@ -128,17 +163,55 @@ impl CameraArgs {
         self.background.unwrap_or(default)
     }
 
-    /// The pictures that the flags ask for; `is_mesh` is whether a mesh alone is looked at, without a scene.
-    pub(super) fn settings(&self, method: Method, is_mesh: bool) -> PictureSettings {
+    /// The pictures that the flags ask for.
+    pub(super) fn settings(&self, method: Method) -> anyhow::Result<PictureSettings> {
         let view = self.picture_view(method.into());
         let mut settings = PictureSettings::new(view);
+        let mut size = settings.camera.size;
+        if self.shows_full_sky() {
+            size = PictureSize::new(1280, 640)?;
+        }
+        let size = self.size.unwrap_or(size);
+        ensure!(
+            !self.shows_full_sky() || size.width() == 2 * size.height(),
+            "--size {}x{}: the whole sky is twice as wide as high, expected a size such as 1280x640",
+            size.width(),
+            size.height()
+        );
         settings.camera = CameraSettings {
-            size: self.size.unwrap_or(settings.camera.size),
-            field_of_view: self.field_of_view(settings.camera.field_of_view, is_mesh),
+            size,
+            projection: self.projection(),
+            field_of_view: self.fov.map_or(FieldOfView::Fitting, FieldOfView::Degrees),
             aim: self.aim(),
+            follow: match (self.hold, self.track) {
+                (true, _) => Follow::Hold,
+                (_, true) => Follow::Track,
+                _ => Follow::Usual,
+            },
         };
+        settings.columns = self.columns;
         settings.samples = self.samples;
-        settings
+        Ok(settings)
+    }
+
+    /// Whether the projection is left to the program.
+    pub(super) fn chooses_projection(&self) -> bool {
+        self.projection.is_none() && !self.full_sky
+    }
+
+    /// Whether the pictures are of the whole sky.
+    pub(super) fn shows_full_sky(&self) -> bool {
+        self.full_sky || self.projection == Some(ProjectionName::FullSky)
+    }
+
+    fn projection(&self) -> PictureProjection {
+        match self.projection {
+            _ if self.full_sky => PictureProjection::FullSky,
+            None => PictureProjection::Usual,
+            Some(ProjectionName::Perspective) => PictureProjection::Perspective,
+            Some(ProjectionName::Stereographic) => PictureProjection::Stereographic,
+            Some(ProjectionName::FullSky) => PictureProjection::FullSky,
+        }
     }
 
     fn picture_view(&self, method: PictureMethod) -> PictureView {
@@ -147,15 +220,6 @@ impl CameraArgs {
             _ if self.sheet => PictureView::Sheet { method, from },
             View::Observer => PictureView::Observer(method),
             View::Outside => PictureView::Outside { from, together },
-        }
-    }
-
-    fn field_of_view(&self, default: FieldOfView, is_mesh: bool) -> FieldOfView {
-        match self.fov {
-            _ if self.full_sky => FieldOfView::FullSky,
-            Some(degrees) => FieldOfView::Degrees(degrees),
-            None if is_mesh && self.aim() == Aim::Usual => FieldOfView::Fitting,
-            None => default,
         }
     }
 
@@ -173,7 +237,7 @@ impl CameraArgs {
             return error.into();
         };
         match error {
-            FramingError::Camera(error @ CameraError::FieldOfView(_)) => {
+            FramingError::Camera(error @ CameraError::FieldOfView { .. }) => {
                 anyhow::Error::new(error).context("--fov")
             }
             FramingError::Camera(error @ CameraError::Look(_)) if self.look.is_some() => {

@@ -4,9 +4,7 @@ use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::PathBuf;
 
 use anyhow::{anyhow, ensure};
-use photosurface::jobs::{
-    Aim, CameraSettings, FieldOfView, FramingError, OBSERVER_FOV_DEG, with_suffix,
-};
+use photosurface::jobs::{Aim, CameraSettings, FieldOfView, FramingError, with_suffix};
 use photosurface::render::{CameraError, PictureSize};
 use photosurface::study::{IntegratorSettings, IntegratorStudy, Made, RaySettings, StudyError};
 use photosurface::{CostSettings, CostStudy, DVec3, PlacedScene, Tolerance};
@@ -295,17 +293,13 @@ impl PictureArgs {
             None => PictureSize::new(320, 180)?,
         };
         let camera = CameraSettings {
-            size,
-            field_of_view: match self.fov {
-                Some(fov) => FieldOfView::Degrees(fov),
-                None if input.is_mesh && self.look.is_none() => FieldOfView::Fitting,
-                None => FieldOfView::Degrees(OBSERVER_FOV_DEG),
-            },
+            field_of_view: self.fov.map_or(FieldOfView::Fitting, FieldOfView::Degrees),
             aim: self.look.map_or(Aim::Usual, Aim::Look),
+            ..CameraSettings::new(size)
         };
         let cameras = camera.observer_cameras(&placed);
         let cameras = cameras.map_err(|error| match error {
-            FramingError::Camera(CameraError::FieldOfView(_)) => {
+            FramingError::Camera(CameraError::FieldOfView { .. }) => {
                 anyhow::Error::new(error).context("--fov")
             }
             _ => anyhow::Error::new(error).context("--look"),

@@ -101,7 +101,7 @@ impl Film<'_> {
         ensure!(
             first != last,
             "--film: the scene has one step; give the proper times of the first and the last frame and the number of frames, \
-             such as --steps=-6..6/200"
+             such as --steps=-6..6/200, or --steps=pass"
         );
         let seconds = self.seconds.unwrap_or(SECONDS);
         let frames = (seconds * self.rate.get()).round();

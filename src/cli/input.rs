@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, bail, ensure};
-use photosurface::jobs::{MAX_SCENE_BYTES, scene_from_bytes, stand_off};
+use photosurface::jobs::{MAX_SCENE_BYTES, fly_by, scene_from_bytes};
 use photosurface::read::{Access, Findings, ReadError, read_whole};
 use photosurface::scene::BUILT_IN_SCENES;
 use photosurface::{Model, Object, Observer, Scene, Source, Textures};
@@ -46,6 +46,16 @@ struct Reading<'a> {
 impl Input {
     /// Reads what the command line names, and tells the user what there is to know about it.
     pub(super) fn read(
+        input: &InputArgs,
+        observer: &ObserverArgs,
+        verbosity: Verbosity,
+    ) -> anyhow::Result<Self> {
+        observer.refuse_speeds()?;
+        Self::read_for_speeds(input, observer, verbosity)
+    }
+
+    /// As [`Input::read`]; of several speeds the scene has the first one.
+    pub(super) fn read_for_speeds(
         input: &InputArgs,
         observer: &ObserverArgs,
         verbosity: Verbosity,
@@ -116,6 +126,7 @@ impl Reading<'_> {
         let place = path.map_or(name.to_string(), |path| path.display().to_string());
         let read = self.access.load_models(&scene, directory);
         let (models, found) = read.with_context(|| place.clone())?;
+        let scene = self.observer.stepped(scene, &models)?;
         let named = path.into_iter().chain(self.observer.file());
         let mut files: Vec<PathBuf> = named.map(Path::to_owned).collect();
         for (file, findings) in found {
@@ -136,7 +147,7 @@ impl Reading<'_> {
         })
     }
 
-    /// A bare mesh, at rest at the origin; the observer, unless placed, moves towards it.
+    /// A bare mesh, at rest at the origin; the observer, unless placed, flies by.
     fn mesh(
         &self,
         name: &str,
@@ -151,8 +162,10 @@ impl Reading<'_> {
         let scene = Scene::new(Observer::default(), vec![Object::new(name, source)])?;
         let mut scene = self.observer.apply(scene)?;
         if !self.observer.has_place() {
-            scene = stand_off(scene, &model)?;
+            scene = fly_by(scene, &model)?;
         }
+        let models = vec![model];
+        let scene = self.observer.stepped(scene, &models)?;
         let mut files = findings.files;
         files.extend(self.observer.file().map(Path::to_owned));
         Ok(Input {
@@ -160,7 +173,7 @@ impl Reading<'_> {
             place,
             is_mesh: true,
             scene,
-            models: vec![model],
+            models,
             files,
             textures: Textures::new(self.access.max_texture_pixels),
         })

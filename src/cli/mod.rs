@@ -22,6 +22,7 @@ mod models;
 mod output;
 mod render;
 mod schema;
+mod speeds;
 mod status;
 mod tables;
 mod wording;

@@ -5,19 +5,20 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 use photosurface::jobs::{
-    Column, EmptyView, RenderError, ViewCost, render_side_by_side, side_by_side_size,
+    EmptyView, FrameFacts, PassageError, RenderError, Variant, ViewCost, passage,
+    render_side_by_side,
 };
-use photosurface::render::Picture;
+use photosurface::render::{Picture, Projection};
 use photosurface::spacetime::ViewModel;
 use photosurface::tessellate::Precision;
 use photosurface::write::write_whole;
-use photosurface::{DVec3, PictureView, PlacedScene};
+use photosurface::{DVec3, Observer, PictureView, PlacedScene, Scene};
 
 use super::accuracy::AccuracyArgs;
-use super::args::{InputArgs, ObserverArgs};
+use super::args::{InputArgs, ObserverArgs, PASSAGE};
 use super::camera::{CameraArgs, Method, View};
 use super::effects::{EffectArgs, tell_of_ramp};
-use super::film::FilmArgs;
+use super::film::{Film, FilmArgs};
 use super::guides::GuideArgs;
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print};
@@ -77,11 +78,8 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     camera.refuse_unused(method, &args.accuracy.given())?;
     check_output(args.output.as_deref())?;
     let film = args.film.film()?;
-    let mut input = Input::read(&args.input, &args.observer, verbosity)?;
-    if let Some(film) = &film {
-        input.scene = film.scene(input.scene, args.observer.has_steps())?;
-    }
-    let mut settings = camera.settings(method, input.is_mesh);
+    let input = Input::read_for_speeds(&args.input, &args.observer, verbosity)?;
+    let mut settings = camera.settings(method)?;
     let kind = match settings.view {
         PictureView::Sheet { .. } => "sheet",
         PictureView::Observer(_) => "observer",
@@ -91,15 +89,15 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}_{kind}.png", input.name)),
     };
-    let steps = input.scene.steps().len();
+    let scenes = scenes(args, &input, film.as_ref())?;
+    let steps = scenes[0].1.steps().len();
     let models = args.models.side_by_side()?;
-    let size = match models.len() {
-        0 => settings
-            .picture_size(steps)
-            .context("--sheet: all steps side by side; choose fewer --steps or a smaller --size")?,
-        columns => side_by_side_size(&settings, columns, steps)
-            .context("--models: all models side by side; choose fewer, or a smaller --size")?,
-    };
+    let columns = models.len().max(1);
+    let size = settings.side_by_side_size(scenes.len(), columns, steps);
+    let size = size.context(match (scenes.len(), columns) {
+        (1, 1) => "--sheet: all steps on one picture; choose fewer --steps or a smaller --size",
+        _ => "all speeds and models on one picture; choose fewer of them, or a smaller --size",
+    })?;
     ensure!(
         film.is_some() || settings.picture_count(steps) == 1 || !is_stdout(&path),
         "{steps} steps are as many pictures, they cannot all go to stdout; choose one with --steps"
@@ -109,11 +107,9 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
         None => settings.files(&path, steps),
     };
     check_destinations(files.iter().cloned(), &input.files)?;
-    let scene = args.models.scene(args.accuracy.scene(input.scene));
-    let scene = args.effects.scene(scene);
-    let placed = PlacedScene::new(scene.clone(), input.models)?;
-    tell_of_ramp(&scene, verbosity);
-    settings.background = camera.background(&scene, settings.background);
+    let scene = &scenes[0].1;
+    tell_of_ramp(scene, verbosity);
+    settings.background = camera.background(scene, settings.background);
     settings.guides = guides.into();
     settings.surface_options = args.accuracy.wanted(Precision::Double);
     let fits_budget = camera.shows_meshes(method) && settings.surface_options.subdivide;
@@ -128,14 +124,21 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     };
     let progress = Bar::new(0, "rows", verbosity);
     let textures = &input.textures;
-    let draw = |finished: &mut dyn FnMut(usize, &Picture) -> anyhow::Result<()>| match models {
-        [] => {
-            let placed = fitted(placed);
+    let placed = |scene: &Scene| PlacedScene::new(scene.clone(), input.models.clone());
+    let draw = |finished: &mut dyn FnMut(usize, &Picture) -> anyhow::Result<()>| match (
+        scenes.as_slice(),
+        models,
+    ) {
+        ([(_, scene)], []) => {
+            let placed = fitted(placed(scene)?);
             photosurface::render(&placed, textures, &settings, &progress, finished)
         }
-        models => {
-            let columns = columns(placed, models, fitted)?;
-            render_side_by_side(&columns, textures, &settings, &progress, finished)
+        (scenes, models) => {
+            let mut rows = vec![];
+            for (label, scene) in scenes {
+                rows.push(row(label, placed(scene)?, models, fitted)?);
+            }
+            render_side_by_side(&rows, textures, &settings, &progress, finished)
         }
     };
     let rendered = match &film {
@@ -148,9 +151,10 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     })?;
     progress.finish();
     tell_of_costs(&rendered.costs, verbosity);
-    let views = steps * models.len().max(1);
+    let views = steps * columns * scenes.len();
+    tell_of_frame(rendered.frame, camera, verbosity);
     tell_of_empty(&rendered.empty, views, camera, method, verbosity);
-    tell_of_missing(&input.textures, &scene, verbosity);
+    tell_of_missing(&input.textures, &scenes[0].1, verbosity);
     if !is_stdout(&files[0]) {
         let pictures = match &film {
             Some(_) => counted(steps, "frame"),
@@ -168,19 +172,96 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     })
 }
 
-/// The scene under each of these models.
-fn columns(
+/// The scene with everything that the flags say, for each speed with its label.
+fn scenes(
+    args: &RenderArgs,
+    input: &Input,
+    film: Option<&Film<'_>>,
+) -> anyhow::Result<Vec<(String, Scene)>> {
+    let observer = input.scene.observer();
+    let mut scenes = vec![];
+    for (label, velocity) in args.observer.speeds(observer)? {
+        let observer = Observer {
+            velocity,
+            ..observer.clone()
+        };
+        let scene = input.scene.clone().with_observer(observer)?;
+        scenes.push((label, args.observer.stepped(scene, &input.models)?));
+    }
+    if scenes.is_empty() {
+        scenes.push((String::new(), input.scene.clone()));
+    }
+    let shows_time = args.camera.sheet || film.is_some();
+    let passes = input.is_mesh && shows_time && args.observer.flies_by();
+    for (_, scene) in &mut scenes {
+        let mut changed = args.accuracy.scene(scene.clone());
+        if passes {
+            let steps = match passage(&changed, &input.models, PASSAGE) {
+                Ok(steps) => steps,
+                // As many pictures as at other speeds.
+                Err(PassageError::AtRest) => changed.steps().repeat(PASSAGE),
+                Err(error) => return Err(error.into()),
+            };
+            changed = changed.with_steps(steps)?;
+        }
+        if let Some(film) = film {
+            changed = film.scene(changed, args.observer.has_frames())?;
+        }
+        *scene = args.effects.scene(args.models.scene(changed));
+    }
+    Ok(scenes)
+}
+
+/// The scene under each of these models, or under its own.
+fn row(
+    label: &str,
     placed: PlacedScene,
     models: &[ViewModel],
     fitted: impl Fn(PlacedScene) -> PlacedScene,
-) -> anyhow::Result<Vec<Column>> {
-    let column = |&model: &ViewModel| {
-        Ok(Column {
-            label: model.to_string(),
+) -> anyhow::Result<Vec<Variant>> {
+    if models.is_empty() {
+        return Ok(vec![Variant {
+            label: label.to_owned(),
+            placed: fitted(placed),
+        }]);
+    }
+    let variant = |&model: &ViewModel| {
+        Ok(Variant {
+            label: match label {
+                "" => model.to_string(),
+                label => format!("{label}, {model}"),
+            },
             placed: fitted(placed.clone().with_model_for_all(model)?),
         })
     };
-    models.iter().map(column).collect()
+    models.iter().map(variant).collect()
+}
+
+/// Says which projection has been chosen, and that one in perspective stretches its edges.
+fn tell_of_frame(frame: Option<FrameFacts>, camera: &CameraArgs, verbosity: Verbosity) {
+    let Some(frame) = frame else {
+        return;
+    };
+    let wide = frame.widest_deg;
+    if frame.is_cut {
+        verbosity.note(format_args!(
+            "no picture is wide enough for everything that is to be seen; the camera looks in the direction of motion; \
+             --projection full-sky shows all, --look and --fov choose a part"
+        ));
+    }
+    match frame.projection {
+        Projection::Perspective { .. } if wide > 90.0 => verbosity.note(format_args!(
+            "the picture is {wide:.0} degrees wide in perspective, which stretches shapes near its edges; with \
+             --projection stereographic circles stay circles"
+        )),
+        Projection::Stereographic { .. } if camera.chooses_projection() => {
+            verbosity.note(format_args!(
+                "everything together is {wide:.0} degrees wide, so the picture is stereographic: circles stay circles, \
+                 straight lines bend; --track follows the objects, --projection perspective keeps lines straight"
+            ));
+        }
+        _ => {}
+    }
 }
 
 /// Says how many rays each view took, and how long.
@@ -213,7 +294,7 @@ fn tell_of_empty(
             empty.len()
         ),
     };
-    let sky = if camera.full_sky {
+    let sky = if camera.shows_full_sky() {
         ""
     } else {
         ", or --full-sky"

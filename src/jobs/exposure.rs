@@ -41,7 +41,6 @@ pub(super) fn expose(all: &mut [Views]) -> Result<(), RenderError> {
 fn luminances(views: &Views, scenery: &Scenery) -> Result<Vec<f64>, RenderError> {
     let steps = views.steps().end;
     let looked_at = steps.min(MAX_STEPS);
-    let fov = views.observer_fov_deg()?;
     let mut luminances = Vec::new();
     for number in 0..looked_at {
         // Evenly spread, the first and the last among them.
@@ -49,7 +48,7 @@ fn luminances(views: &Views, scenery: &Scenery) -> Result<Vec<f64>, RenderError>
         let places = views.seen_vertices(step)?;
         let directions = match views.settings.view {
             PictureView::Outside { .. } => of_vertices(&places, RAYS / looked_at),
-            _ => of_pixels(&views.observer_camera(fov, &places)?, RAYS / looked_at),
+            _ => of_pixels(&views.observer_camera(&places)?, RAYS / looked_at),
         };
         let moment = views.moment(step)?;
         luminances.extend(scenery.luminances(Viewpoint::Observer(&moment), &directions));

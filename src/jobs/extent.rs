@@ -23,16 +23,6 @@ pub(super) fn middle_of_sky(places: &[DVec3]) -> DVec3 {
     (low + high).try_normalize().unwrap_or(DVec3::NEG_Z)
 }
 
-/// The largest angle between the direction `middle` and the direction from the origin to any of the points, in radians.
-pub(super) fn angle_around(middle: DVec3, places: &[DVec3]) -> f64 {
-    // A cosine would lose the digits of small angles.
-    let angle = |place: &DVec3| {
-        let place = scaled(*place);
-        place.cross(middle).length().atan2(place.dot(middle))
-    };
-    places.iter().map(angle).fold(0.0, f64::max)
-}
-
 /// The smallest and the largest coordinates of all points.
 pub(super) fn bounds(places: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
     places.fold(
@@ -117,8 +107,6 @@ mod tests {
             let places = places.map(|place| place * distance);
             let middle = middle_of_sky(&places);
             assert!(middle.distance(DVec3::X) < 1e-12, "{distance}");
-            let angle = angle_around(middle, &places);
-            assert!((angle - 0.8_f64.atan2(0.6)).abs() < 1e-9, "{distance}");
             assert!(
                 (length(places[0]) / distance - 1.0).abs() < 1e-9,
                 "{distance}"

@@ -34,11 +34,6 @@ impl Grid {
         }
     }
 
-    /// How many rows of views there are.
-    pub(super) fn rows(&self) -> u32 {
-        (self.picture.size().height() + GAP) / (self.size.height() + GAP)
-    }
-
     /// Places a view.
     pub(super) fn place(&mut self, view: &Picture, column: usize, row: usize) {
         let x = column as u32 * (self.size.width() + GAP);

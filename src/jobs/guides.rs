@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use super::framing::OutsideCamera;
+use super::outside_camera::OutsideCamera;
 use crate::light_cone::View;
 use crate::mesh::Mesh;
 use crate::pipeline::{PlacedScene, PlacedSceneError, SurfaceOptions};
@@ -143,7 +143,7 @@ fn straight_ghosts(placed: &PlacedScene, model: ViewModel, step: usize) -> Vec<M
 
 /// Draws the axes of the observer, each with its name at its end.
 fn draw_axes(picture: &mut Picture, outside: &OutsideCamera, scenery: &Scenery) {
-    let length = round_below(outside.height / 5.0);
+    let length = outside.axes;
     for (axis, name, color) in [
         (DVec3::X, "x", RED),
         (DVec3::Y, "y", GREEN),
@@ -211,7 +211,7 @@ fn contrasting(background: Color) -> Color {
 }
 
 /// The largest number up to `limit` that is 1, 2 or 5 times a power of ten.
-fn round_below(limit: f64) -> f64 {
+pub(super) fn round_below(limit: f64) -> f64 {
     let exponent = limit.log10().floor();
     let power = 10f64.powi(exponent.abs() as i32);
     let round = |digit: f64| {

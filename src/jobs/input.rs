@@ -2,20 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use glam::DVec3;
 use thiserror::Error;
 
+use super::passage::fly_by;
 use super::{FileFindings, LoadError};
-use crate::material::Model;
 use crate::pipeline::{PlacedScene, PlacedSceneError};
 use crate::read::{Access, ReadError, read_whole};
-use crate::scene::{InvalidScene, Object, Observer, Place, PlaceError, Scene, SceneError, Source};
+use crate::scene::{InvalidScene, Object, Observer, PlaceError, Scene, SceneError, Source};
 
 /// Limit on the bytes of a scene's text, enough for some hundred thousand objects.
 pub const MAX_SCENE_BYTES: u64 = 100_000_000;
-
-/// Distance of the observer from the centre of a mesh by itself, in diagonals of the mesh's bounds.
-const STAND_OFF: f64 = 2.0;
 
 /// Reasons why bytes are not the text of a scene.
 #[derive(Debug, Error)]
@@ -80,9 +76,8 @@ impl PlacedScene {
     /// Reads a scene (.json) with the models of its objects, or a mesh by itself (.glb, .gltf, .obj); returns the
     /// findings about each file as well. A file that another file names is read only if [`Access::default`] allows it.
     ///
-    /// A mesh by itself is at rest at the origin. The observer is at rest, two diagonals of the mesh's bounds in front
-    /// of its centre, and looks along -z; [`Scene::with_observer`] and [`PlacedScene::new`] make a scene with another
-    /// observer.
+    /// A mesh by itself is at rest at the origin. The observer is at rest where [`fly_by`](super::fly_by) has it for motion
+    /// along -z; [`Scene::with_observer`] and [`PlacedScene::new`] make a scene with another observer.
     ///
     /// # Errors
     ///
@@ -128,7 +123,7 @@ impl Access {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let object = Object::new(name, Source::File(path.to_owned()));
         let scene = Scene::new(Observer::default(), vec![object])?;
-        let scene = stand_off(scene, &model)?;
+        let scene = fly_by(scene, &model)?;
         let placed = PlacedScene::new(scene, vec![model])?;
         Ok((placed, vec![(path.to_owned(), findings)]))
     }
@@ -156,27 +151,4 @@ pub fn text_of(bytes: &[u8]) -> Result<&str, SceneTextError> {
             byte: bytes[offset],
         }
     })
-}
-
-/// The scene with its observer at another position: two diagonals of the model's bounds from the centre of these
-/// bounds, and moving towards it. The origin of the model is the origin of the scene.
-///
-/// # Errors
-///
-/// An error is returned if the observer's position is out of range.
-pub fn stand_off(scene: Scene, model: &Model) -> Result<Scene, PlaceError> {
-    let observer = scene.observer().clone();
-    let position = match model.bounds() {
-        None => DVec3::ZERO,
-        Some((low, high)) => {
-            let away = STAND_OFF * (high - low).length();
-            0.5 * (low + high) - observer.velocity.direction() * away
-        }
-    };
-    let observer = Observer {
-        position: Place::new(position)?,
-        ..observer
-    };
-    let moved = scene.with_observer(observer);
-    Ok(moved.expect("a flight is possible wherever it begins"))
 }

@@ -17,14 +17,17 @@ mod framing;
 mod grid;
 mod guides;
 mod input;
+mod layout;
 mod legend;
 mod load;
+mod observer_frame;
+mod outside_camera;
+mod passage;
 mod picture_settings;
 mod pictures;
 mod progress;
 mod rendered;
-mod sheet;
-mod side_by_side;
+mod seen;
 mod tally;
 mod vertex_colors;
 mod views;
@@ -44,16 +47,16 @@ pub use export::{
 };
 pub use export_settings::{ExportError, ExportSettings};
 pub use files::{OutputError, check_outputs, file_for_each_step, with_suffix};
-pub use framing::{Aim, CameraSettings, FieldOfView, FramingError, OBSERVER_FOV_DEG};
-pub use guides::Guides;
-pub use input::{
-    InputError, MAX_SCENE_BYTES, SceneTextError, scene_from_bytes, stand_off, text_of,
+pub use framing::{
+    Aim, CameraSettings, FieldOfView, Follow, FramingError, OBSERVER_FOV_DEG, PictureProjection,
 };
+pub use guides::Guides;
+pub use input::{InputError, MAX_SCENE_BYTES, SceneTextError, scene_from_bytes, text_of};
 pub use load::{FileFindings, LoadError, load_models};
+pub use passage::{PassageError, fly_by, passage};
 pub use picture_settings::{PictureMethod, PictureSettings, PictureView};
-pub use pictures::{render, render_to_files};
+pub use pictures::{Variant, render, render_side_by_side, render_to_files};
 pub use progress::{Cancelled, Progress};
-pub use rendered::{EmptyView, RenderError, Rendered, ViewCost};
-pub use side_by_side::{Column, render_side_by_side, side_by_side_size};
+pub use rendered::{EmptyView, FrameFacts, RenderError, Rendered, ViewCost};
 pub use tally::Tally;
 pub use vertex_colors::LightNote;

@@ -1,14 +1,15 @@
 //! Which pictures of a scene are drawn, from where and how.
 
-use std::num::NonZeroU32;
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
 use super::files::file_for_each_step;
-use super::framing::{Aim, CameraSettings, FieldOfView, OBSERVER_FOV_DEG};
+use super::framing::CameraSettings;
 use super::grid::grid_size;
 use super::guides::Guides;
+use super::layout::{Page, Shape, pages};
 use crate::pipeline::SurfaceOptions;
 use crate::render::{CameraError, PictureOptions, PictureSize};
 use crate::shape::Color;
@@ -27,8 +28,8 @@ pub enum PictureView {
         /// Whether the photosurfaces of all steps are in one picture; if not, there is one picture for each step.
         together: bool,
     },
-    /// One picture of all steps, with a column for each step. The upper row shows the observer's view, labelled with
-    /// the observer's proper time. The lower row shows the photosurface from outside, all at one scale.
+    /// One picture of all steps beside each other: above, the observer's view, labelled with the observer's proper time;
+    /// below, the photosurface from outside, all at one scale.
     Sheet {
         /// How the observer's views are drawn.
         method: PictureMethod,
@@ -54,6 +55,9 @@ pub struct PictureSettings {
     pub view: PictureView,
     /// The settings of the cameras. On a sheet the size is the size of each view.
     pub camera: CameraSettings,
+    /// How many steps a sheet of one scene, or of each of several, has beside each other; with `None` at most eight, in rows
+    /// of about equal length.
+    pub columns: Option<NonZeroUsize>,
     /// Number of rays along each side of a pixel: N gives N x N rays per pixel. More than 1024 count as 1024.
     pub samples: NonZeroU32,
     /// The colour where nothing is seen.
@@ -67,25 +71,18 @@ pub struct PictureSettings {
 
 impl PictureSettings {
     /// The default settings of the command `photosurface render`: 1280 by 720 pixels, or 320 by 240 for each view of a
-    /// sheet, and nine rays per pixel. In pictures of the observer's view alone the vertical field of view is 60
-    /// degrees; on a sheet and outside, the cameras have everything in the picture.
+    /// sheet, and nine rays per pixel. The cameras have everything in the picture.
     pub fn new(view: PictureView) -> Self {
         let [width, height] = match view {
             PictureView::Sheet { .. } => [320, 240],
             _ => [1280, 720],
         };
-        let field_of_view = match view {
-            PictureView::Observer(_) => FieldOfView::Degrees(OBSERVER_FOV_DEG),
-            _ => FieldOfView::Fitting,
-        };
+        let size = PictureSize::new(width, height).expect("both sides are within the limits");
         let options = PictureOptions::default();
         Self {
             view,
-            camera: CameraSettings {
-                size: PictureSize::new(width, height).expect("both sides are within the limits"),
-                field_of_view,
-                aim: Aim::Usual,
-            },
+            camera: CameraSettings::new(size),
+            columns: None,
             samples: NonZeroU32::new(options.samples).unwrap_or(NonZeroU32::MIN),
             background: options.background,
             guides: Guides::default(),
@@ -103,9 +100,46 @@ impl PictureSettings {
     ///
     /// An error is returned if a sheet has more pixels along one side than a picture may have.
     pub fn picture_size(&self, steps: usize) -> Result<PictureSize, CameraError> {
+        self.side_by_side_size(1, 1, steps)
+    }
+
+    /// As [`PictureSettings::picture_size`], of so many rows and columns of scenes beside each other.
+    ///
+    /// # Errors
+    ///
+    /// As [`PictureSettings::picture_size`].
+    pub fn side_by_side_size(
+        &self,
+        rows: usize,
+        columns: usize,
+        steps: usize,
+    ) -> Result<PictureSize, CameraError> {
+        let pages = self.pages(Shape { rows, columns }, steps);
+        pages
+            .first()
+            .map_or(Ok(self.camera.size), |page| self.page_size(page))
+    }
+
+    /// The pictures of scenes with so many steps.
+    pub(super) fn pages(&self, scenes: Shape, steps: usize) -> Vec<Page> {
+        pages(self.view, scenes, steps, self.columns)
+    }
+
+    /// The size, in pixels, of a picture of these cells.
+    pub(super) fn page_size(&self, page: &Page) -> Result<PictureSize, CameraError> {
+        let columns = page.iter().map(Vec::len).max().unwrap_or(1);
+        grid_size(
+            self.camera.size,
+            columns,
+            page.len() * self.views_of_a_cell(),
+        )
+    }
+
+    /// How many views stand above each other for a scene at a step.
+    pub(super) fn views_of_a_cell(&self) -> usize {
         match self.view {
-            PictureView::Sheet { .. } => grid_size(self.camera.size, steps, 2),
-            _ => Ok(self.camera.size),
+            PictureView::Sheet { .. } => 2,
+            _ => 1,
         }
     }
 
@@ -124,16 +158,6 @@ impl PictureSettings {
             1 => vec![path.to_owned()],
             count => file_for_each_step(path, count),
         }
-    }
-
-    /// Number of pixel rows of all views of a scene with `steps` steps: the pieces of work that are reported to
-    /// [`Progress`].
-    pub(super) fn rows(&self, steps: usize) -> usize {
-        let views = match self.view {
-            PictureView::Sheet { .. } => 2 * steps,
-            _ => self.picture_count(steps),
-        };
-        self.camera.size.height() as usize * views
     }
 }
 

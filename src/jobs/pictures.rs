@@ -1,13 +1,19 @@
-//! Pictures of all steps of a scene, drawn in one call.
+//! Pictures of all steps of a scene, or of several scenes beside each other, drawn in one call.
 
 use std::path::Path;
 
 use super::exposure::expose;
 use super::files::check_outputs;
+use super::framing::heading;
+use super::grid::Grid;
+use super::guides::label;
+use super::layout::{Cell, Page, Shape};
+use super::observer_frame::ObserverFrame;
+use super::outside_camera::{Contents, OutsideCamera};
 use super::picture_settings::{PictureSettings, PictureView};
 use super::progress::Progress;
 use super::rendered::{RenderError, Rendered};
-use super::sheet::draw_sheet;
+use super::seen::sky_of;
 use super::views::Views;
 use crate::pipeline::PlacedScene;
 use crate::render::{Picture, Textures};
@@ -54,37 +60,257 @@ pub fn render<E: From<RenderError>>(
     textures: &Textures,
     settings: &PictureSettings,
     progress: &dyn Progress,
-    mut finished: impl FnMut(usize, &Picture) -> Result<(), E>,
+    finished: impl FnMut(usize, &Picture) -> Result<(), E>,
 ) -> Result<Rendered, E> {
-    let steps = placed.scene().steps().len();
-    progress.begin(settings.rows(steps));
-    let mut views = Views::new(placed, textures, settings, progress);
-    expose(std::slice::from_mut(&mut views))?;
-    match settings.view {
-        PictureView::Observer(_) => {
-            let fov = views.observer_fov_deg()?;
-            for step in 0..steps {
-                let mut picture = views.observer(step, fov)?;
-                views.draw_legend(&mut picture);
-                finished(step, &picture)?;
-            }
-        }
-        PictureView::Outside { from, together } => {
-            let camera = views.outside_camera(from)?;
-            let pictures = if together { 1 } else { steps };
-            for number in 0..pictures {
-                let shown = match together {
-                    true => 0..steps,
-                    false => number..number + 1,
-                };
-                let mut picture = views.outside(shown, &camera)?;
-                views.draw_legend(&mut picture);
-                finished(number, &picture)?;
-            }
-        }
-        PictureView::Sheet { from, .. } => finished(0, &draw_sheet(&mut views, from)?)?,
+    let shape = Shape {
+        rows: 1,
+        columns: 1,
+    };
+    let views = vec![Views::new(placed, textures, settings, progress)];
+    Table::new(shape, views, vec![""])?.draw(finished)
+}
+
+/// A scene that is shown beside others.
+#[derive(Clone, Debug)]
+pub struct Variant {
+    /// The words in the upper left corner of its views.
+    pub label: String,
+    /// The scene.
+    pub placed: PlacedScene,
+}
+
+/// Draws pictures as [`render()`] does, of several scenes beside each other: rows of as many scenes each.
+///
+/// The observer's views have one field of view, and one direction where the camera holds it; views from outside have one
+/// distance from the middle of what they show. A sheet of rows of single scenes has the steps beside each other, any other
+/// sheet has the steps below each other.
+///
+/// # Errors
+///
+/// As [`render()`]; also if the scenes differ in their number of steps, if the rows differ in their number of scenes, or if
+/// there is none.
+pub fn render_side_by_side<E: From<RenderError>>(
+    rows: &[Vec<Variant>],
+    textures: &Textures,
+    settings: &PictureSettings,
+    progress: &dyn Progress,
+    finished: impl FnMut(usize, &Picture) -> Result<(), E>,
+) -> Result<Rendered, E> {
+    let columns = rows.first().map_or(0, Vec::len);
+    let all: Vec<&Variant> = rows.iter().flatten().collect();
+    let Some(first) = all.first() else {
+        return Err(RenderError::NoScene.into());
+    };
+    if rows.iter().any(|row| row.len() != columns) {
+        return Err(RenderError::Rows.into());
     }
-    Ok(views.rendered)
+    let steps = first.placed.scene().steps().len();
+    let other = |variant: &&&Variant| variant.placed.scene().steps().len() != steps;
+    if let Some(variant) = all.iter().find(other) {
+        let label = variant.label.clone();
+        let found = variant.placed.scene().steps().len();
+        return Err(RenderError::Steps {
+            label,
+            found,
+            steps,
+        }
+        .into());
+    }
+    let shape = Shape {
+        rows: rows.len(),
+        columns,
+    };
+    let views = all
+        .iter()
+        .map(|variant| Views::new(&variant.placed, textures, settings, progress));
+    let labels = all.iter().map(|variant| variant.label.as_str()).collect();
+    Table::new(shape, views.collect(), labels)?.draw(finished)
+}
+
+/// The views of scenes beside each other, and the pictures that show them.
+struct Table<'a> {
+    /// One for each scene, row by row.
+    views: Vec<Views<'a>>,
+    labels: Vec<&'a str>,
+    settings: &'a PictureSettings,
+    steps: usize,
+    pages: Vec<Page>,
+    /// For each cell, in the order of pictures, rows and columns.
+    outside: Vec<OutsideCamera>,
+}
+
+impl<'a> Table<'a> {
+    /// Frames all views and finds their exposure; there is at least one.
+    fn new(
+        shape: Shape,
+        mut views: Vec<Views<'a>>,
+        labels: Vec<&'a str>,
+    ) -> Result<Self, RenderError> {
+        let settings = views[0].settings;
+        let steps = views[0].steps().end;
+        let pages = settings.pages(shape, steps);
+        let cells = pages.iter().flatten().map(Vec::len).sum::<usize>();
+        let rows = settings.camera.size.height() as usize * cells * settings.views_of_a_cell();
+        views[0].progress.begin(rows);
+        frame_observer(&mut views)?;
+        expose(&mut views)?;
+        let mut table = Self {
+            views,
+            labels,
+            settings,
+            steps,
+            pages,
+            outside: vec![],
+        };
+        table.outside = table.outside_cameras()?;
+        Ok(table)
+    }
+
+    /// The cameras outside of all cells, at one distance from the middle of what they show.
+    fn outside_cameras(&self) -> Result<Vec<OutsideCamera>, RenderError> {
+        let (from, frames) = match self.settings.view {
+            PictureView::Observer(_) => return Ok(vec![]),
+            // One camera for each scene, at all steps.
+            PictureView::Outside { from, .. } => {
+                let frames = self.views.iter().map(Views::all_framed);
+                (from, frames.collect::<Result<Vec<_>, _>>()?)
+            }
+            PictureView::Sheet { from, .. } => {
+                let cells = self.pages.iter().flatten().flatten();
+                let frames =
+                    cells.map(|cell| self.views[cell.scene].framed_outside(cell.steps.start));
+                (from, frames.collect::<Result<Vec<_>, _>>()?)
+            }
+        };
+        let contents = Contents {
+            frames: &frames,
+            with_axes: self.settings.guides.axes,
+        };
+        let cameras = self.settings.camera.outside_cameras(from, contents)?;
+        Ok(match self.settings.view {
+            PictureView::Sheet { .. } => cameras,
+            _ => {
+                let cells = self.pages.iter().flatten().flatten();
+                cells.map(|cell| cameras[cell.scene]).collect()
+            }
+        })
+    }
+
+    fn draw<E: From<RenderError>>(
+        mut self,
+        mut finished: impl FnMut(usize, &Picture) -> Result<(), E>,
+    ) -> Result<Rendered, E> {
+        let mut before = 0;
+        for (number, page) in std::mem::take(&mut self.pages).iter().enumerate() {
+            let picture = self.picture(page, before)?;
+            finished(number, &picture)?;
+            before += page.iter().map(Vec::len).sum::<usize>();
+        }
+        let each = self.views.into_iter().map(|views| views.rendered);
+        Ok(each.fold(Rendered::default(), Rendered::with))
+    }
+
+    /// One picture, before which there are so many cells.
+    fn picture(&mut self, page: &Page, before: usize) -> Result<Picture, RenderError> {
+        let steps = self.steps;
+        let settings = self.settings;
+        let size = settings.page_size(page);
+        let size = size.map_err(|source| RenderError::Sheet { steps, source })?;
+        let mut grid = Grid::new(size, settings.camera.size, settings.background);
+        let last = page.iter().map(Vec::len).sum::<usize>();
+        let mut number = 0;
+        for (row, cells) in page.iter().enumerate() {
+            for (column, cell) in cells.iter().enumerate() {
+                let outside = self.outside.get(before + number).copied();
+                number += 1;
+                let mut pictures = self.cell(cell, outside)?;
+                if let Some(picture) = pictures.last_mut().filter(|_| number == last) {
+                    self.views[cell.scene].draw_legend(picture);
+                }
+                for (part, picture) in pictures.iter().enumerate() {
+                    grid.place(picture, column, row * settings.views_of_a_cell() + part);
+                }
+            }
+        }
+        Ok(grid.picture)
+    }
+
+    /// The views of one cell, from above.
+    fn cell(
+        &mut self,
+        cell: &Cell,
+        outside: Option<OutsideCamera>,
+    ) -> Result<Vec<Picture>, RenderError> {
+        let views = &mut self.views[cell.scene];
+        let mut pictures = vec![];
+        if !matches!(self.settings.view, PictureView::Outside { .. }) {
+            pictures.push(views.observer(cell.steps.start)?);
+        }
+        if let Some(camera) = outside {
+            pictures.push(views.outside(cell.steps.clone(), &camera)?);
+        }
+        if let (Some(first), Some(text)) = (pictures.first_mut(), self.label_of(cell)) {
+            label(first, &text, self.settings.background);
+        }
+        Ok(pictures)
+    }
+
+    /// The words on a cell: which scene, and on a sheet of several steps the proper time.
+    fn label_of(&self, cell: &Cell) -> Option<String> {
+        let is_sheet = matches!(self.settings.view, PictureView::Sheet { .. });
+        let label = self.labels[cell.scene];
+        let proper_time = self.views[cell.scene].placed.scene().steps()[cell.steps.start];
+        match (label, is_sheet) {
+            ("", false) => None,
+            ("", true) => Some(proper_time_label(proper_time)),
+            (label, true) if self.steps > 1 => {
+                Some(format!("{label}, {}", proper_time_label(proper_time)))
+            }
+            (label, _) => Some(label.to_owned()),
+        }
+    }
+}
+
+/// Finds one frame for the observer's pictures of all scenes, if there are such pictures.
+fn frame_observer(all: &mut [Views]) -> Result<(), RenderError> {
+    let [first, ..] = all else {
+        return Ok(());
+    };
+    let is_sheet = matches!(first.settings.view, PictureView::Sheet { .. });
+    if matches!(first.settings.view, PictureView::Outside { .. }) {
+        return Ok(());
+    }
+    let scene = first.placed.scene();
+    let camera = first
+        .settings
+        .camera
+        .for_observer(scene.observer(), is_sheet);
+    let heading = heading(first.placed);
+    let mut skies = vec![];
+    for views in all.iter() {
+        for step in views.steps() {
+            skies.push(sky_of(&views.framed(step)?));
+        }
+    }
+    let frame = ObserverFrame::new(&camera, &skies, heading)?;
+    for views in all {
+        views.frame = Some(frame);
+        views.rendered.frame = Some(frame.facts());
+    }
+    Ok(())
+}
+
+/// The label of a step at a proper time of the observer.
+fn proper_time_label(proper_time: f64) -> String {
+    format!("τ = {}", short(proper_time))
+}
+
+/// A number in at most six digits, if it has more.
+fn short(number: f64) -> f64 {
+    match number.to_string().len() {
+        ..=8 => number,
+        _ => format!("{number:.5e}").parse().unwrap_or(number),
+    }
 }
 
 /// Draws pictures as [`render()`] does, and writes each as PNG to its file of [`PictureSettings::files`] as soon as it

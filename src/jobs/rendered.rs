@@ -8,7 +8,7 @@ use super::framing::FramingError;
 use super::progress::Cancelled;
 use super::tally::Tally;
 use crate::pipeline::PlacedSceneError;
-use crate::render::CameraError;
+use crate::render::{CameraError, Projection};
 use crate::write::WriteError;
 
 /// Reasons why there are no pictures, or not all of them.
@@ -27,16 +27,19 @@ pub enum RenderError {
         source: CameraError,
     },
     /// No scene is to stand side by side with others.
-    #[error("there is no scene, expected one for each column")]
-    NoColumn,
+    #[error("there is no scene, expected at least one")]
+    NoScene,
+    /// Rows of scenes differ in their number of scenes.
+    #[error("there are rows of different numbers of scenes, expected as many in each")]
+    Rows,
     /// Scenes that are to stand side by side differ in their number of steps.
     #[error("\"{label}\" has {found} steps beside one with {steps}, expected as many")]
-    Columns {
-        /// The label of the column.
+    Steps {
+        /// The label of the scene.
         label: String,
         /// Number of its steps.
         found: usize,
-        /// Number of steps of the first column.
+        /// Number of steps of the first scene.
         steps: usize,
     },
     /// There are no photosurfaces.
@@ -72,6 +75,8 @@ pub struct Rendered {
     pub tally: Tally,
     /// The observer's views that show nothing but the background.
     pub empty: Vec<EmptyView>,
+    /// The frame of the observer's views, if there are any.
+    pub frame: Option<FrameFacts>,
     /// The cost of each view, in the order in which they were drawn; a sheet has two views for each step.
     pub costs: Vec<ViewCost>,
 }
@@ -82,8 +87,22 @@ impl Rendered {
         self.tally.merge(other.tally);
         self.empty.extend(other.empty);
         self.costs.extend(other.costs);
+        self.frame = self.frame.or(other.frame);
         self
     }
+}
+
+/// What the observer's views show of the sky.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameFacts {
+    /// How directions are laid out, with the field of view.
+    pub projection: Projection,
+    /// The angle, in degrees, between the left and right edges of a picture, or between the upper and lower ones if that is
+    /// more.
+    pub widest_deg: f64,
+    /// Whether everything was to be in the picture, and is not: no picture is wide enough. The camera looks in the direction
+    /// of motion then.
+    pub is_cut: bool,
 }
 
 /// A view of the observer that shows only the background, because every object is in another direction or smaller than

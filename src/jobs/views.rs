@@ -7,13 +7,16 @@ use std::time::Instant;
 use glam::DVec3;
 
 use super::extent::{middle_of_sky, outermost};
-use super::framing::{OutsideCamera, seen_vertices};
 use super::guides::Ghost;
 use super::legend::draw_ramp_legend;
+use super::observer_frame::ObserverFrame;
+use super::outside_camera::OutsideCamera;
 use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
 use super::progress::Progress;
 use super::rendered::{EmptyView, RenderError, Rendered, ViewCost};
+use super::seen::{seen_vertices, sky_of};
 use crate::effects::Doppler;
+use crate::material::Part;
 use crate::pipeline::{PlacedScene, PlacedSceneError, SurfaceOptions};
 use crate::render::{
     Camera, Picture, PictureEffects, PictureOptions, Scenery, Strokes, Textures, Viewpoint,
@@ -31,7 +34,7 @@ pub(super) struct Views<'a> {
     pub(super) placed: &'a PlacedScene,
     pub(super) settings: &'a PictureSettings,
     textures: &'a Textures,
-    progress: &'a dyn Progress,
+    pub(super) progress: &'a dyn Progress,
     /// All objects in their rest frames, for views by rays.
     at_rest: Option<Scenery>,
     /// What casts shadows in views of photosurfaces, if the scene has lamps.
@@ -40,6 +43,8 @@ pub(super) struct Views<'a> {
     by_rays: bool,
     /// What the scene calls for, if it does.
     effects: Option<PictureEffects>,
+    /// The frame of the observer's pictures, once it is known.
+    pub(super) frame: Option<ObserverFrame>,
     /// The first step whose photosurfaces have not been counted yet.
     next_step: usize,
     pub(super) rendered: Rendered,
@@ -71,6 +76,7 @@ impl<'a> Views<'a> {
             occluders: shows_mapped.then(|| Arc::new(at_rest(placed, textures, None))),
             by_rays,
             effects,
+            frame: None,
             next_step: 0,
             rendered: Rendered::default(),
         }
@@ -112,13 +118,12 @@ impl<'a> Views<'a> {
     }
 
     /// The observer's camera at one step.
-    pub(super) fn observer_camera(
-        &self,
-        fov_deg: f64,
-        places: &[DVec3],
-    ) -> Result<Camera, RenderError> {
-        let camera = self.settings.camera.for_observer(self.placed.scene());
-        Ok(camera.observer_camera(fov_deg, places)?)
+    pub(super) fn observer_camera(&self, places: &[DVec3]) -> Result<Camera, RenderError> {
+        let frame = self
+            .frame
+            .as_ref()
+            .expect("the observer's pictures are framed first");
+        Ok(frame.camera(&sky_of(places))?)
     }
 
     /// What the observer is at one step.
@@ -128,51 +133,23 @@ impl<'a> Views<'a> {
         Ok(moment.ok_or(PlacedSceneError::Step { step, steps })?)
     }
 
-    /// Vertical field of view of the observer's camera, in degrees, the same at all steps.
-    pub(super) fn observer_fov_deg(&self) -> Result<f64, RenderError> {
-        let places = self.steps().map(|step| self.seen_vertices(step));
-        let camera = self.settings.camera.for_observer(self.placed.scene());
-        camera.observer_fov_deg(places)
-    }
-
-    /// A camera outside that has everything at every step in the picture, or stands at the position `from`.
-    pub(super) fn outside_camera(&self, from: Option<DVec3>) -> Result<OutsideCamera, RenderError> {
-        let cameras = self
-            .settings
-            .camera
-            .outside_cameras(from, &[self.all_framed()?])?;
-        Ok(cameras[0])
-    }
-
     /// The positions, in the observer's frame, that one camera outside has to have in the picture for all steps.
     pub(super) fn all_framed(&self) -> Result<Vec<DVec3>, RenderError> {
         let mut all = Vec::new();
         for step in self.steps() {
-            all.extend(self.framed(step)?);
+            all.extend(self.framed_outside(step)?);
         }
         let marker = self.placed.marker();
         if let Some((low, high)) = marker.and_then(|part| part.mesh().bounds()) {
             all.extend([low, high]);
         }
-        if self.settings.guides.axes {
-            all.push(DVec3::ZERO);
-        }
         Ok(all)
     }
 
-    /// A camera outside for each step; all have the same distance, or stand at the position `from`.
-    pub(super) fn outside_cameras(
-        &self,
-        from: Option<DVec3>,
-    ) -> Result<Vec<OutsideCamera>, RenderError> {
-        let framed: Result<Vec<_>, _> = self.steps().map(|step| self.framed(step)).collect();
-        Ok(self.settings.camera.outside_cameras(from, &framed?)?)
-    }
-
-    /// The observer's view at one step, with a vertical field of view in degrees.
-    pub(super) fn observer(&mut self, step: usize, fov_deg: f64) -> Result<Picture, RenderError> {
-        let places = self.seen_vertices(step)?;
-        let camera = self.observer_camera(fov_deg, &places)?;
+    /// The observer's view at one step.
+    pub(super) fn observer(&mut self, step: usize) -> Result<Picture, RenderError> {
+        let places = self.framed(step)?;
+        let camera = self.observer_camera(&places)?;
         let moment = self.moment(step)?;
         let viewpoint = Viewpoint::Observer(&moment);
         let ghosts = self.ghosts(step)?;
@@ -206,7 +183,9 @@ impl<'a> Views<'a> {
     ) -> Result<Picture, RenderError> {
         let settings = self.settings;
         let mut scenery = self.scenery();
-        if let Some(marker) = self.placed.marker() {
+        // A camera inside the marker would see nothing else.
+        let is_inside = |marker: &Part| marker_holds(marker, outside.place);
+        if let Some(marker) = self.placed.marker().filter(|marker| !is_inside(marker)) {
             scenery.add_in_view(marker);
         }
         let mut ghosts = Vec::new();
@@ -242,7 +221,8 @@ impl<'a> Views<'a> {
         Ok(seen_vertices(self.placed, step)?)
     }
 
-    /// The positions, in the observer's frame, that a camera outside has to have in the picture at one step.
+    /// The positions, in the observer's frame, of everything that pictures show at one step beside the guides: objects and
+    /// their ghosts.
     pub(super) fn framed(&self, step: usize) -> Result<Vec<DVec3>, RenderError> {
         let mut places = self.seen_vertices(step)?;
         let options = SurfaceOptions {
@@ -252,7 +232,12 @@ impl<'a> Views<'a> {
         for (mesh, _) in self.settings.guides.ghosts(self.placed, step, options)? {
             places.extend_from_slice(mesh.positions());
         }
-        Ok(outermost(places))
+        Ok(places)
+    }
+
+    /// As [`Views::framed`], without those that are not farthest out.
+    pub(super) fn framed_outside(&self, step: usize) -> Result<Vec<DVec3>, RenderError> {
+        Ok(outermost(self.framed(step)?))
     }
 
     fn add_photosurfaces(&mut self, scenery: &mut Scenery, step: usize) -> Result<(), RenderError> {
@@ -302,6 +287,12 @@ impl<'a> Views<'a> {
         let rays = u64::from(width) * u64::from(height) * of_a_pixel;
         Ok((picture, ViewCost { rays, seconds }))
     }
+}
+
+/// Whether a place is within the bounds of the marker.
+fn marker_holds(marker: &Part, place: DVec3) -> bool {
+    let holds = |(low, high): (DVec3, DVec3)| place.cmpge(low).all() && place.cmple(high).all();
+    marker.mesh().bounds().is_some_and(holds)
 }
 
 /// Has a scenery show ghosts; returns their edges, which are drawn onto the picture.

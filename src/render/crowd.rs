@@ -367,7 +367,7 @@ mod tests {
 
     fn camera(look: DVec3) -> Camera {
         let size = PictureSize::new(96, 72).unwrap();
-        let projection = Projection::Pinhole {
+        let projection = Projection::Perspective {
             vertical_fov_deg: 60.0,
         };
         Camera::new(size, projection, look).unwrap()

@@ -77,7 +77,7 @@ const FACETS: f64 = 1e-4;
 ///         scenery.add_at_rest(object, part);
 ///     }
 /// }
-/// let camera = Camera::new(PictureSize::new(64, 48)?, Projection::Pinhole { vertical_fov_deg: 30.0 }, DVec3::NEG_Z)?;
+/// let camera = Camera::new(PictureSize::new(64, 48)?, Projection::Perspective { vertical_fov_deg: 30.0 }, DVec3::NEG_Z)?;
 /// let moment = placed.scene().moment(0).expect("a scene has a first step");
 /// let picture = scenery.picture(&camera, Viewpoint::Observer(&moment), PictureOptions::default());
 /// assert_ne!(picture.pixel(32, 24), picture.pixel(0, 0));
@@ -458,7 +458,7 @@ mod tests {
             scenery.add_in_view(part);
         }
         let size = PictureSize::new(1, 1).unwrap();
-        let projection = Projection::Pinhole {
+        let projection = Projection::Perspective {
             vertical_fov_deg: 1.0,
         };
         let camera = Camera::new(size, projection, look).unwrap();
@@ -511,7 +511,7 @@ mod tests {
         wall = wall.transformed(&glam::DAffine3::from_translation(DVec3::X * 100.0));
         scenery.add_in_view(&wall);
         let size = PictureSize::new(1, 1).unwrap();
-        let projection = Projection::Pinhole {
+        let projection = Projection::Perspective {
             vertical_fov_deg: 1.0,
         };
         let camera = Camera::new(size, projection, DVec3::NEG_Z).unwrap();

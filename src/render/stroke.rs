@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn what_is_hidden_is_faint_and_what_is_behind_the_camera_is_not_there() {
         let size = PictureSize::new(40, 40).unwrap();
-        let projection = Projection::Pinhole {
+        let projection = Projection::Perspective {
             vertical_fov_deg: 90.0,
         };
         let camera = Camera::new(size, projection, DVec3::NEG_Z).unwrap();

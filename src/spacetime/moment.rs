@@ -134,6 +134,13 @@ impl Moment {
         self.scene_to_observer.boost_velocity()
     }
 
+    /// The direction in which the observer moves in the scene, as a unit vector in its own axes: where aberration crowds the
+    /// sky. `None` at rest.
+    pub fn heading_own(&self) -> Option<DVec3> {
+        let scene = self.scene_to_observer.inverse().boost_velocity();
+        (scene.rapidity() > 0.0).then(|| -scene.direction())
+    }
+
     /// The observer's own axes x, y, z, as differences of events in the scene frame: each of length 1, and at the same time
     /// in the observer's frame.
     pub fn axes(&self) -> [Event; 3] {

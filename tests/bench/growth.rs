@@ -137,7 +137,7 @@ fn picture(placed: &PlacedScene) -> Duration {
             }
         }
         let size = PictureSize::new(100, 100).expect("a fair size");
-        let projection = Projection::Pinhole {
+        let projection = Projection::Perspective {
             vertical_fov_deg: 60.0,
         };
         let camera = Camera::new(size, projection, DVec3::NEG_Z).expect("a fair camera");

@@ -55,7 +55,7 @@ impl Cloud {
 
 fn camera(look: DVec3, vertical_fov_deg: f64) -> Camera {
     let size = PictureSize::new(160, 90).expect("a fair size");
-    Camera::new(size, Projection::Pinhole { vertical_fov_deg }, look).expect("a fair camera")
+    Camera::new(size, Projection::Perspective { vertical_fov_deg }, look).expect("a fair camera")
 }
 
 fn pools() -> [(usize, ThreadPool); 2] {

@@ -791,7 +791,7 @@ fn pictures_take_any_numbers() {
         (part.mesh().clone().transformed(&moved), white)
     }));
     let views = [0.0, 5e-324, 1e-300, 179.999_999_999_999, 180.0, f64::NAN];
-    let projections = views.map(|vertical_fov_deg| Projection::Pinhole { vertical_fov_deg });
+    let projections = views.map(|vertical_fov_deg| Projection::Perspective { vertical_fov_deg });
     let cameras = projections.into_iter().chain([Projection::FullSky]);
     let cameras: Vec<Camera> = cameras
         .filter_map(|projection| Camera::new(size, projection, DVec3::NEG_Z).ok())

@@ -53,7 +53,7 @@ impl Area {
         let source = Source::Model(Arc::new(model.clone()));
         let scene = Scene::new(observer, vec![Object::new("area", source)]).expect("one object");
         let size = PictureSize::new(self.width, self.height).expect("a fair size");
-        let projection = Projection::Pinhole {
+        let projection = Projection::Perspective {
             vertical_fov_deg: self.fov_deg,
         };
         let mut rays = RaySettings::new(vec![

@@ -227,7 +227,7 @@ fn rays_agree_with_the_turned_photosurface() {
             );
         }
         let size = PictureSize::new(120, 90).expect("a fair size");
-        let projection = Projection::Pinhole {
+        let projection = Projection::Perspective {
             vertical_fov_deg: 24.0,
         };
         let camera =

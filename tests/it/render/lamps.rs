@@ -67,7 +67,7 @@ fn take(placed: &PlacedScene, scenery: &Scenery, camera: &Camera) -> Picture {
 
 fn camera(width: u32, height: u32, vertical_fov_deg: f64, look: DVec3) -> Camera {
     let size = PictureSize::new(width, height).expect("a fair size");
-    Camera::new(size, Projection::Pinhole { vertical_fov_deg }, look).expect("a fair camera")
+    Camera::new(size, Projection::Perspective { vertical_fov_deg }, look).expect("a fair camera")
 }
 
 fn pixels(camera: &Camera) -> impl Iterator<Item = (u32, u32, DVec3)> + use<'_> {

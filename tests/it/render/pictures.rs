@@ -104,7 +104,7 @@ fn outline(picture: &Picture) -> Vec<DVec2> {
 
 fn pinhole(width: u32, height: u32, vertical_fov_deg: f64, look: DVec3) -> Camera {
     let size = PictureSize::new(width, height).expect("a fair size");
-    Camera::new(size, Projection::Pinhole { vertical_fov_deg }, look).expect("a fair camera")
+    Camera::new(size, Projection::Perspective { vertical_fov_deg }, look).expect("a fair camera")
 }
 
 /// Scenes, with where to look and how wide.

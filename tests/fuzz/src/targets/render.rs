@@ -36,7 +36,7 @@ fn take(case: &Case, placed: PlacedScene) {
     } = case.picture;
     let size = PictureSize::new(width, height).expect("a few pixels are a picture");
     let projection = match fov {
-        Some(vertical_fov_deg) => Projection::Pinhole { vertical_fov_deg },
+        Some(vertical_fov_deg) => Projection::Perspective { vertical_fov_deg },
         None => Projection::FullSky,
     };
     let camera = match Camera::new(size, projection, look.into()) {
