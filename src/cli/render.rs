@@ -80,6 +80,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     let film = args.film.film()?;
     let input = Input::read_for_speeds(&args.input, &args.observer, verbosity)?;
     let mut settings = camera.settings(method)?;
+    settings.guides = guides.guides(camera.sheet || film.is_some())?;
     let kind = match settings.view {
         PictureView::Sheet { .. } => "sheet",
         PictureView::Observer(_) => "observer",
@@ -110,7 +111,6 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     let scene = &scenes[0].1;
     tell_of_ramp(scene, verbosity);
     settings.background = camera.background(scene, settings.background);
-    settings.guides = guides.into();
     settings.surface_options = args.accuracy.wanted(Precision::Double);
     let fits_budget = camera.shows_meshes(method) && settings.surface_options.subdivide;
     let fitted = |placed| match fits_budget {

@@ -2,7 +2,9 @@
 
 mod ahead;
 mod budget;
+mod caption;
 mod clock;
+mod contrast;
 #[cfg(feature = "plot")]
 mod diagram;
 #[cfg(feature = "plot")]
@@ -14,9 +16,11 @@ mod exposure;
 mod extent;
 mod files;
 mod framing;
+mod ghosts;
 mod grid;
 mod guides;
 mod input;
+mod labels;
 mod layout;
 mod legend;
 mod load;
@@ -36,6 +40,7 @@ mod work;
 #[cfg(feature = "plot")]
 pub use crate::plot::{PlotError, PlotSize};
 pub use budget::{DEFAULT_MAX_TRIANGLES, Fitted};
+pub use caption::Caption;
 #[cfg(feature = "plot")]
 pub use diagram::{
     DiagramError, DiagramMoment, DiagramPoint, DiagramSettings, DiagramTick, Emission, PointLine,

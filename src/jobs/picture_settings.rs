@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
+use super::caption::{Caption, strip_height};
 use super::files::file_for_each_step;
 use super::framing::CameraSettings;
 use super::grid::grid_size;
@@ -71,7 +72,7 @@ pub struct PictureSettings {
 
 impl PictureSettings {
     /// The default settings of the command `photosurface render`: 1280 by 720 pixels, or 320 by 240 for each view of a
-    /// sheet, and nine rays per pixel. The cameras have everything in the picture.
+    /// sheet, and nine rays per pixel. The cameras have everything in the picture. A sheet has a caption.
     pub fn new(view: PictureView) -> Self {
         let [width, height] = match view {
             PictureView::Sheet { .. } => [320, 240],
@@ -85,7 +86,13 @@ impl PictureSettings {
             columns: None,
             samples: NonZeroU32::new(options.samples).unwrap_or(NonZeroU32::MIN),
             background: options.background,
-            guides: Guides::default(),
+            guides: Guides {
+                caption: match view {
+                    PictureView::Sheet { .. } => Caption::STANDARD,
+                    _ => Caption::default(),
+                },
+                ..Guides::default()
+            },
             surface_options: SurfaceOptions {
                 precision: Precision::Double,
                 ..SurfaceOptions::default()
@@ -128,11 +135,23 @@ impl PictureSettings {
     /// The size, in pixels, of a picture of these cells.
     pub(super) fn page_size(&self, page: &Page) -> Result<PictureSize, CameraError> {
         let columns = page.iter().map(Vec::len).max().unwrap_or(1);
-        grid_size(
-            self.camera.size,
-            columns,
-            page.len() * self.views_of_a_cell(),
-        )
+        let rows = page.len() * self.views_of_a_cell();
+        let size = grid_size(self.camera.size, columns, rows)?;
+        PictureSize::new(size.width(), size.height() + self.strip_height())
+    }
+
+    /// The height of the strip above a sheet in which the caption of all of it stands, in pixels.
+    pub(super) fn strip_height(&self) -> u32 {
+        let Guides {
+            caption, ghosts, ..
+        } = &self.guides;
+        let has_ghosts = !caption.is_none() && !ghosts.is_empty();
+        match self.view {
+            PictureView::Sheet { .. } if caption.is_of_a_sheet() || has_ghosts => {
+                strip_height(self.camera.size.height())
+            }
+            _ => 0,
+        }
     }
 
     /// How many views stand above each other for a scene at a step.

@@ -30,31 +30,20 @@ fn a_film_goes_from_the_first_step_to_the_last() {
         .success();
     assert_eq!(frame_count(&workplace.read("default.apng")), 200);
     // With steps of their own there are exactly these; the first frame of an APNG is a picture like any other.
-    workplace
-        .run("render scene.json --size 32x18 --steps=2,-2,0 --film=-own.png")
-        .success();
-    let own = workplace.read("-own.png");
-    assert_eq!(frame_count(&own), 3);
-    workplace
-        .run("render scene.json --size 32x18 --steps=2 -o last.png")
-        .success();
+    let own = "render scene.json --size 32x18 --caption none --steps=2,-2,0";
+    workplace.run(&format!("{own} --film=-own.png")).success();
+    let film = workplace.read("-own.png");
+    assert_eq!(frame_count(&film), 3);
+    workplace.run(&format!("{own} -o own.png")).success();
     let pixels = |name: &str| {
-        image::load_from_memory(&workplace.read(name))
-            .unwrap()
-            .to_rgb8()
+        let picture = image::load_from_memory(&workplace.read(name));
+        picture.expect("a picture").to_rgb8()
     };
-    assert_eq!(pixels("-own.png"), pixels("last.png"));
+    assert_eq!(pixels("-own.png"), pixels("own_step000.png"));
     // As bytes to stdout.
-    let line = "render scene.json --size 32x18 --steps=2,-2,0 --film -";
-    assert_eq!(workplace.run(line).success().stdout, own);
-    let names = [
-        "-own.png",
-        "default.apng",
-        "last.png",
-        "out.png",
-        "scene.json",
-    ];
-    assert_eq!(workplace.files(), names);
+    let run = workplace.run(&format!("{own} --film -")).success();
+    assert_eq!(run.stdout, film);
+    assert_eq!(workplace.files().len(), 7, "{:?}", workplace.files());
 }
 
 #[test]
@@ -64,7 +53,7 @@ fn models_side_by_side_and_views_from_outside_make_films() {
     for (flags, size) in [
         ("--view outside --axes", [32, 18]),
         ("--models seen,rest", [68, 18]),
-        ("--full-sky --method mesh", [32, 18]),
+        ("--fov 70 --method mesh", [32, 18]),
     ] {
         let line =
             format!("render scene.json --size 32x18 --fps 2 --seconds 2 {flags} --film a.gif");
