@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow, bail, ensure};
 use clap::Args;
 use photosurface::jobs::{MAX_SCENE_BYTES, passage, text_of};
+use photosurface::material::Normals;
 use photosurface::read::{Access, read_whole};
 use photosurface::scene::{FlightPlan, MarkerRadius, Place, Rotation, Time, Units, even_steps};
 use photosurface::spacetime::Integrator;
@@ -16,7 +17,8 @@ use super::speeds::SpeedArgs;
 /// What to look at.
 #[derive(Debug, Args)]
 pub(super) struct InputArgs {
-    /// A scene file (.json), a mesh (.glb, .gltf, .obj), or - to read a scene (JSON) or a GLB from stdin
+    /// A scene file (.json), a mesh (.glb, .gltf, .obj, .ply, .stl, .off), or - to read a scene (JSON), a GLB, PLY, STL or OFF
+    /// from stdin; coordinates of a PLY, STL or OFF are taken as they stand, y up
     /// [default: the built-in scene "sphere"]
     #[arg(value_name = "SCENE|MESH")]
     pub(super) input: Option<PathBuf>,
@@ -27,6 +29,16 @@ pub(super) struct InputArgs {
     /// be in the folder of SCENE or MESH, in the working directory, or below, after links are resolved
     #[arg(long, value_name = "DIR", value_parser = folder, help_heading = "Reading")]
     allow_read: Vec<PathBuf>,
+    /// Normals of meshes from files (overrides the scene): those of the file, and of flat facets where it has none; "smooth",
+    /// with shared vertices, parted along creases of more than DEGREES, 60 if not given; "flat"; "none", so that the
+    /// vertices stay those of the file and viewers shade facets. All but "source" replace the normals of the file
+    /// [default: source]
+    #[arg(
+        long,
+        value_name = "source|smooth[:DEGREES]|flat|none",
+        help_heading = "Reading"
+    )]
+    pub(super) normals: Option<Normals>,
     /// Maximum number of pixels of all decoded textures together, four bytes each; further textures are left out, with a note
     #[arg(long, value_name = "N", default_value_t = Access::default().max_texture_pixels, value_parser = whole_number, help_heading = "Reading")]
     max_texture_pixels: u64,
@@ -49,7 +61,8 @@ pub(super) struct ObserverArgs {
     #[command(flatten)]
     speed: SpeedArgs,
     /// Direction of the observer's motion, a vector of any length. Without a speed it only changes the direction of the
-    /// scene's velocity; a mesh without a scene is seen from that side, at rest [default for a mesh: 0,0,-1]
+    /// scene's velocity [default for a mesh: -1,0,0, so that the observer passes before its front, which is the side of z; with
+    /// --observer 0,0,-1]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     direction: Option<DVec3>,
     /// Velocity of the observer in units of the speed of light, in place of a speed and a direction

@@ -26,8 +26,8 @@ pub(super) struct CameraArgs {
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<PictureSize>,
     /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180, or below 360 in stereographic
-    /// projection [default: so that everything is in the picture; 60 for an observer who flies, or whose axes are turned; 30
-    /// from outside]
+    /// projection [default: so that everything is in the picture; 60 with --look or --target, and for an observer who flies or
+    /// whose axes are turned; 30 from outside]
     #[arg(long, value_name = "DEG", value_parser = number, allow_hyphen_values = true)]
     fov: Option<f64>,
     /// How directions are laid out [default: perspective, but stereographic for the observer where everything in

@@ -111,12 +111,10 @@ struct PictureArgs {
     /// Width and height of the pictures in pixels [default: 320x180]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<PictureSize>,
-    /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180 [default: 60; for a mesh without
-    /// --look wide enough for all of it]
+    /// Field of view from the lower to the upper edge, in degrees, above 0 and below 180 [default: that of render]
     #[arg(long, value_name = "DEG", value_parser = number, allow_hyphen_values = true)]
     fov: Option<f64>,
-    /// Direction in which the observer looks, of any length [default: at each step towards the middle of the objects;
-    /// for an observer who flies, or whose axes are turned, its own -z]
+    /// Direction in which the observer looks, of any length [default: that of render for several pictures]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     look: Option<DVec3>,
 }
@@ -385,9 +383,5 @@ mod tests {
         for number in [default.max_triangles, default.samples.get() as u64] {
             assert!(help.contains(&format!("[default: {number}]")), "{help}");
         }
-        assert!(
-            help.contains(&format!("[default: {OBSERVER_FOV_DEG};")),
-            "{help}"
-        );
     }
 }

@@ -18,6 +18,13 @@ pub(super) struct GuideArgs {
     /// Draw the observer's axes at its place in views from outside: x red, y green, z blue
     #[arg(long)]
     axes: bool,
+    /// Draw a grid of longitude and latitude every 30 degrees, with the direction of motion, in the observer's pictures
+    /// [default in pictures of the whole sky]
+    #[arg(long)]
+    grid: bool,
+    /// Draw no grid in pictures of the whole sky
+    #[arg(long, conflicts_with = "grid")]
+    no_grid: bool,
     /// Draw a bar of a round length in scene units in views from outside, as it is in the middle of what is shown
     #[arg(long, conflicts_with = "full_sky")]
     scale_bar: bool,
@@ -43,12 +50,13 @@ enum Part {
 }
 
 impl GuideArgs {
-    /// The guides that are asked for; `tells_time` is whether the pictures show several moments together.
-    pub(super) fn guides(&self, tells_time: bool) -> anyhow::Result<Guides> {
+    /// The guides of pictures, of the whole sky or of less; `tells_time` is whether the pictures show several moments together.
+    pub(super) fn guides(&self, of_full_sky: bool, tells_time: bool) -> anyhow::Result<Guides> {
         Ok(Guides {
             ghosts: self.ghost.clone(),
             axes: self.axes,
             scale_bar: self.scale_bar,
+            sky_grid: self.grid || of_full_sky && !self.no_grid,
             wireframe: self.wireframe,
             labels: self.labels,
             caption: self.caption(tells_time)?,

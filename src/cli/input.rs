@@ -4,8 +4,12 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, bail, ensure};
-use photosurface::jobs::{MAX_SCENE_BYTES, fly_by, scene_from_bytes};
-use photosurface::read::{Access, Findings, ReadError, read_whole};
+use photosurface::jobs::{MAX_SCENE_BYTES, fly_by, passing_observer, scene_from_bytes};
+use photosurface::material::Normals;
+use photosurface::read::{
+    Access, EXPECTED_MODEL, Findings, ReadError, is_model_extension, is_model_of_one_file,
+    read_whole, with_normals,
+};
 use photosurface::scene::BUILT_IN_SCENES;
 use photosurface::{Model, Object, Observer, Scene, Source, Textures};
 
@@ -14,8 +18,8 @@ use super::example::built_in;
 use super::messages::Verbosity;
 use super::output::extension;
 
-/// How many bytes a GLB has at most, since its header says so in 32 bits.
-const MAX_GLB_BYTES: u64 = u32::MAX as u64;
+/// How many bytes a mesh from stdin has at most: as many as a GLB, since its header says so in 32 bits.
+const MAX_MESH_BYTES: u64 = u32::MAX as u64;
 
 /// A scene with its models and where they came from.
 #[derive(Debug)]
@@ -39,6 +43,7 @@ pub(super) struct Input {
 /// What is read, for whom, and how much is said about it.
 struct Reading<'a> {
     access: Access,
+    normals: Option<Normals>,
     observer: &'a ObserverArgs,
     verbosity: Verbosity,
 }
@@ -62,6 +67,7 @@ impl Input {
     ) -> anyhow::Result<Self> {
         let reading = Reading {
             access: input.access(),
+            normals: input.normals,
             observer,
             verbosity,
         };
@@ -74,8 +80,8 @@ impl Input {
             }
             Some(path) if path == Path::new("-") => {
                 let bytes = from_stdin()?;
-                if bytes.starts_with(b"glTF") {
-                    let read = reading.access.read_gltf_bytes(&bytes, Path::new(""));
+                if is_model_of_one_file(&bytes) {
+                    let read = reading.access.read_model_bytes(&bytes, Path::new(""));
                     return reading.mesh("mesh", read.context("stdin")?, None);
                 }
                 let scene = scene_from_stdin(&bytes)?;
@@ -106,7 +112,7 @@ impl Reading<'_> {
                 let scene = scene_from_bytes(&bytes).with_context(|| place)?;
                 self.scene(&name, scene, Some(path))
             }
-            Some("glb" | "gltf" | "obj") => {
+            Some(extension) if is_model_extension(extension) => {
                 let read = self.access.read_model(path).map_err(wrong)?;
                 self.mesh(&name, read, Some(path))
             }
@@ -115,13 +121,21 @@ impl Reading<'_> {
                 bail!("{place}: {}", not_a_file("a pipe or a device"))
             }
             _ => bail!(
-                "{place}: unknown extension, expected a scene (.json) or a mesh (.glb, .gltf, .obj)"
+                "{place}: unknown extension, expected a scene (.json) or a mesh: {EXPECTED_MODEL}"
             ),
         }
     }
 
     fn scene(&self, name: &str, scene: Scene, path: Option<&Path>) -> anyhow::Result<Input> {
-        let scene = self.observer.apply(scene)?;
+        let mut scene = self.observer.apply(scene)?;
+        if let Some(normals) = self.normals {
+            let is_file = |object: &Object| matches!(object.source, Source::File(_));
+            ensure!(
+                scene.objects().iter().any(is_file),
+                "--normals is for meshes from files, and no object of the scene comes from a file"
+            );
+            scene = scene.with_normals(normals);
+        }
         let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
         let place = path.map_or(name.to_string(), |path| path.display().to_string());
         let read = self.access.load_models(&scene, directory);
@@ -151,15 +165,21 @@ impl Reading<'_> {
     fn mesh(
         &self,
         name: &str,
-        (model, findings): (Model, Findings),
+        read: (Model, Findings),
         path: Option<&Path>,
     ) -> anyhow::Result<Input> {
         let place = path.map_or("stdin".into(), |path| path.display().to_string());
+        let read = with_normals(read, self.normals.unwrap_or_default());
+        let (model, findings) = read.with_context(|| place.clone())?;
         for note in findings.lines() {
             self.verbosity.note(format_args!("{place}: {note}"));
         }
         let source = Source::File(path.unwrap_or(Path::new("-")).to_owned());
-        let scene = Scene::new(Observer::default(), vec![Object::new(name, source)])?;
+        let observer = match self.observer.has_place() {
+            true => Observer::default(),
+            false => passing_observer(),
+        };
+        let scene = Scene::new(observer, vec![Object::new(name, source)])?;
         let mut scene = self.observer.apply(scene)?;
         if !self.observer.has_place() {
             scene = fly_by(scene, &model)?;
@@ -204,7 +224,7 @@ fn not_a_file(found: &str) -> String {
     }
 }
 
-/// All of stdin, if it is no more than a scene or a GLB can be.
+/// All of stdin, if it is no more than a scene or a mesh can be.
 fn from_stdin() -> anyhow::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut stdin = std::io::stdin().lock();
@@ -219,25 +239,30 @@ fn from_stdin() -> anyhow::Result<Vec<u8>> {
     };
     let mut limit = MAX_SCENE_BYTES;
     let mut is_more = read_to(limit, &mut bytes)?;
-    if is_more && bytes.starts_with(b"glTF") {
-        limit = MAX_GLB_BYTES;
+    if is_more && !text_of(&bytes).starts_with(b"{") {
+        limit = MAX_MESH_BYTES;
         is_more = read_to(limit, &mut bytes)?;
     }
     ensure!(
         !is_more,
-        "stdin: too long, expected at most {limit} bytes of a scene (JSON), or {MAX_GLB_BYTES} of a GLB"
+        "stdin: too long, expected at most {MAX_SCENE_BYTES} bytes of a scene (JSON), or {MAX_MESH_BYTES} of a mesh"
     );
     Ok(bytes)
 }
 
+/// Bytes without what may be before the first letter of a text.
+fn text_of(bytes: &[u8]) -> &[u8] {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    text.trim_ascii_start()
+}
+
 /// Stdin has no name that says what it holds.
 fn scene_from_stdin(bytes: &[u8]) -> anyhow::Result<Scene> {
-    const EXPECTED: &str = "stdin must be a scene (JSON) or a GLB";
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let text = text.trim_ascii_start();
+    const EXPECTED: &str = "stdin must be a scene (JSON), or a GLB, PLY, STL or OFF";
+    let text = text_of(bytes);
     ensure!(
         !text.is_empty(),
-        "stdin is empty, expected a scene (JSON) or a GLB"
+        "stdin is empty, expected a scene (JSON), or a GLB, PLY, STL or OFF"
     );
     ensure!(
         text.starts_with(b"{") || text.starts_with(b"["),

@@ -80,7 +80,8 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     let film = args.film.film()?;
     let input = Input::read_for_speeds(&args.input, &args.observer, verbosity)?;
     let mut settings = camera.settings(method)?;
-    settings.guides = guides.guides(camera.sheet || film.is_some())?;
+    let tells_time = camera.sheet || film.is_some();
+    settings.guides = guides.guides(camera.shows_full_sky(), tells_time)?;
     let kind = match settings.view {
         PictureView::Sheet { .. } => "sheet",
         PictureView::Observer(_) => "observer",

@@ -34,7 +34,8 @@ pub enum PictureProjection {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FieldOfView {
     /// Everything at every step that the camera shows, with a margin. The observer's camera has the narrowest field of view
-    /// that does this; a camera outside has 30 degrees from the lower to the upper edge and stands far enough away.
+    /// that does this, or one of 60 degrees from the lower to the upper edge where it is told in which direction to look; a
+    /// camera outside has 30 degrees and stands far enough away.
     Fitting,
     /// This angle from the lower to the upper edge of the picture, in degrees: above 0, and below 180 in perspective or
     /// below 360 in stereographic projection.
@@ -47,7 +48,8 @@ pub enum Aim {
     /// An observer who flies, or whose axes are turned, looks along its own -z axis; all others as with [`Aim::Middle`].
     #[default]
     Usual,
-    /// The middle of all objects; for the observer, that of the part of the sky that they cover.
+    /// The middle of all objects; for the observer, that of the part of the sky that they cover, or the direction of motion
+    /// in pictures of the whole sky that do not track.
     Middle,
     /// A direction, as a vector of any length.
     Look(DVec3),
@@ -145,16 +147,16 @@ impl CameraSettings {
     /// The settings of the observer's camera, without anything that is "usual" but the projection.
     pub(super) fn for_observer(&self, observer: &Observer, is_sheet: bool) -> Self {
         let mut here = *self;
-        let has_own_aim = observer.has_own_axes() && self.follow != Follow::Track;
         if self.aim == Aim::Usual {
-            here.aim = match has_own_aim {
+            here.aim = match observer.has_own_axes() && self.follow != Follow::Track {
                 true => Aim::Look(DVec3::NEG_Z),
                 false => Aim::Middle,
             };
-            // What is behind a pilot is not in the picture.
-            if has_own_aim && self.field_of_view == FieldOfView::Fitting {
-                here.field_of_view = FieldOfView::Degrees(OBSERVER_FOV_DEG);
-            }
+        }
+        // What is elsewhere than where the camera is told to look is not in the picture.
+        let is_told = matches!(here.aim, Aim::Look(_) | Aim::Target(_));
+        if is_told && self.field_of_view == FieldOfView::Fitting {
+            here.field_of_view = FieldOfView::Degrees(OBSERVER_FOV_DEG);
         }
         if self.follow == Follow::Usual {
             here.follow = if is_sheet {

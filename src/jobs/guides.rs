@@ -32,6 +32,9 @@ pub struct Guides {
     /// Whether a bar is drawn in views from outside that shows a round length, in scene units, at the distance of the camera's target.
     /// Pictures of the whole sky have no scale and no bar.
     pub scale_bar: bool,
+    /// Whether a grid of longitude and latitude every 30 degrees, and the direction of motion, are drawn in the observer's
+    /// pictures.
+    pub sky_grid: bool,
     /// Whether the edges of all triangles of photosurfaces are drawn, also in the observer's pictures of them.
     pub wireframe: bool,
     /// Whether the name of each object stands beside it.

@@ -4,11 +4,14 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::passage::fly_by;
+use super::passage::{fly_by, passing_observer};
 use super::{FileFindings, LoadError};
+use crate::material::Normals;
 use crate::pipeline::{PlacedScene, PlacedSceneError};
-use crate::read::{Access, ReadError, read_whole};
-use crate::scene::{InvalidScene, Object, Observer, PlaceError, Scene, SceneError, Source};
+use crate::read::{
+    Access, EXPECTED_MODEL, ReadError, is_model_extension, read_whole, with_normals,
+};
+use crate::scene::{InvalidScene, Object, PlaceError, Scene, SceneError, Source};
 
 /// Limit on the bytes of a scene's text, enough for some hundred thousand objects.
 pub const MAX_SCENE_BYTES: u64 = 100_000_000;
@@ -35,7 +38,7 @@ pub enum SceneTextError {
 #[non_exhaustive]
 pub enum InputError {
     /// The extension is neither that of a scene nor that of a mesh.
-    #[error("{}: unknown extension, expected a scene (.json) or a mesh (.glb, .gltf, .obj)", .0.display())]
+    #[error("{}: unknown extension, expected a scene (.json) or a mesh: {EXPECTED_MODEL}", .0.display())]
     UnknownExtension(PathBuf),
     /// The file cannot be read.
     #[error("{}", file.display())]
@@ -73,11 +76,12 @@ pub enum InputError {
 }
 
 impl PlacedScene {
-    /// Reads a scene (.json) with the models of its objects, or a mesh by itself (.glb, .gltf, .obj); returns the
-    /// findings about each file as well. A file that another file names is read only if [`Access::default`] allows it.
+    /// Reads a scene (.json) with the models of its objects, or a mesh by itself (.glb, .gltf, .obj, .ply, .stl,
+    /// .off); returns the findings about each file as well. A file that another file names is read only if
+    /// [`Access::default`] allows it.
     ///
     /// A mesh by itself is at rest at the origin. The observer is at rest where [`fly_by`](super::fly_by) has it for motion
-    /// along -z; [`Scene::with_observer`] and [`PlacedScene::new`] make a scene with another observer.
+    /// along -x, before the front of the mesh; [`Scene::with_observer`] and [`PlacedScene::new`] make a scene with another observer.
     ///
     /// # Errors
     ///
@@ -113,16 +117,15 @@ impl Access {
             })?;
             return Ok((PlacedScene::new(scene, models)?, findings));
         }
-        if !["glb", "gltf", "obj"]
-            .iter()
-            .any(|known| extension == *known)
-        {
+        if !is_model_extension(&extension.to_string_lossy()) {
             return Err(InputError::UnknownExtension(path.to_owned()));
         }
-        let (model, findings) = self.read_model(path).map_err(wrong)?;
+        let read = self.read_model(path);
+        let read = read.and_then(|read| with_normals(read, Normals::Source));
+        let (model, findings) = read.map_err(wrong)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let object = Object::new(name, Source::File(path.to_owned()));
-        let scene = Scene::new(Observer::default(), vec![object])?;
+        let scene = Scene::new(passing_observer(), vec![object])?;
         let scene = fly_by(scene, &model)?;
         let placed = PlacedScene::new(scene, vec![model])?;
         Ok((placed, vec![(path.to_owned(), findings)]))

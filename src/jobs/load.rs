@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::material::Model;
-use crate::read::{Access, Findings, ReadError, read_named_model};
+use crate::read::{Access, Findings, ReadError, read_named_model, with_normals};
 use crate::scene::{Scene, Source};
 use crate::shape::ShapeError;
 
@@ -85,6 +85,8 @@ impl Access {
         let reach = self.reach(directory);
         // Models by folder and file name; links to the folder are resolved.
         let mut known: HashMap<PathBuf, Model> = HashMap::new();
+        // The same with normals: objects that ask for the same share them.
+        let mut shaded: HashMap<(PathBuf, String), Model> = HashMap::new();
         let mut files = Vec::new();
         let mut models = Vec::with_capacity(scene.objects().len());
         for object in scene.objects() {
@@ -102,7 +104,18 @@ impl Access {
                         files.push((path.clone(), found));
                         known.insert(place.clone(), model);
                     }
-                    known[&place].clone()
+                    let normals = object.normals.unwrap_or_default();
+                    let key = (place.clone(), normals.to_string());
+                    if !shaded.contains_key(&key) {
+                        let read = (known[&place].clone(), Findings::default());
+                        let (model, found) = with_normals(read, normals).map_err(wrong)?;
+                        let of_file = files.iter_mut().find(|(file, _)| place_of(file) == place);
+                        if let Some((_, findings)) = of_file {
+                            findings.notes.extend(found.notes);
+                        }
+                        shaded.insert(key.clone(), model);
+                    }
+                    shaded[&key].clone()
                 }
                 Source::Shape(shape, appearance) => {
                     shape.model(appearance).map_err(|source| LoadError::Shape {

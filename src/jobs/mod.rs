@@ -32,6 +32,7 @@ mod pictures;
 mod progress;
 mod rendered;
 mod seen;
+mod sky_grid;
 mod tally;
 mod vertex_colors;
 mod views;
@@ -58,7 +59,7 @@ pub use framing::{
 pub use guides::Guides;
 pub use input::{InputError, MAX_SCENE_BYTES, SceneTextError, scene_from_bytes, text_of};
 pub use load::{FileFindings, LoadError, load_models};
-pub use passage::{PassageError, fly_by, passage};
+pub use passage::{PassageError, fly_by, passage, passing_observer};
 pub use picture_settings::{PictureMethod, PictureSettings, PictureView};
 pub use pictures::{Variant, render, render_side_by_side, render_to_files};
 pub use progress::{Cancelled, Progress};

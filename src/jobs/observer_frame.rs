@@ -55,6 +55,16 @@ struct Fit {
     half_height: f64,
 }
 
+impl CameraSettings {
+    /// The field of view that is asked for, or the customary one, in degrees.
+    fn fov_deg(&self) -> f64 {
+        match self.field_of_view {
+            FieldOfView::Degrees(fov_deg) => fov_deg,
+            FieldOfView::Fitting => OBSERVER_FOV_DEG,
+        }
+    }
+}
+
 impl ObserverFrame {
     /// The frame that settings without a usual aim ask for. `skies` are the directions that pictures have to show, as
     /// unit vectors in the observer's axes, a list for each step; `heading` is the direction of motion.
@@ -80,19 +90,28 @@ impl ObserverFrame {
             let aim = match (aimed, settings.follow) {
                 (Some(look), _) => held(look, DVec3::Y),
                 (None, Follow::Track) => Direction::Tracked(Flat::Perspective),
-                (None, _) => held(middle_of_sky(&all), DVec3::Y),
+                (None, _) => held(heading, DVec3::Y),
             };
             return frame(Projection::FullSky, aim, false).checked(settings);
         }
+        let asked = match (settings.projection, settings.field_of_view) {
+            // The field of view is one of a camera as people know it.
+            (PictureProjection::Usual, FieldOfView::Degrees(_)) => PictureProjection::Perspective,
+            (asked, _) => asked,
+        };
+        let (first, _) = candidates(asked)[0];
+        if let Some(look) = aimed {
+            let projection = first.projection(settings.fov_deg());
+            return frame(projection, held(look, DVec3::Y), false).checked(settings);
+        }
         let aspect = aspect(settings.size);
-        for &(flat, limit_deg) in candidates(settings.projection) {
-            let fits: Option<Vec<Fit>> = match (aimed, settings.follow) {
-                (Some(look), _) => fit_along(flat, look, &all, aspect).map(|fit| vec![fit]),
-                (None, Follow::Track) => {
+        for &(flat, limit_deg) in candidates(asked) {
+            let fits: Option<Vec<Fit>> = match settings.follow {
+                Follow::Track => {
                     let skies = skies.iter();
                     skies.map(|sky| fit(flat, sky, aspect, false)).collect()
                 }
-                (None, _) => fit(flat, &all, aspect, skies.len() > 1).map(|fit| vec![fit]),
+                _ => fit(flat, &all, aspect, skies.len() > 1).map(|fit| vec![fit]),
             };
             let Some(fits) = fits else {
                 continue;
@@ -100,29 +119,25 @@ impl ObserverFrame {
             let half_height = fits.iter().map(|fit| fit.half_height).fold(0.0, f64::max);
             let fov_deg = match settings.field_of_view {
                 FieldOfView::Degrees(fov_deg) => fov_deg,
-                FieldOfView::Fitting => {
-                    let widest = flat.fov_deg(half_height * aspect.max(1.0));
-                    if widest > limit_deg {
-                        continue;
-                    }
-                    flat.fov_deg(half_height).max(MIN_FOV_DEG)
-                }
+                FieldOfView::Fitting => flat.fov_deg(half_height).max(MIN_FOV_DEG),
             };
-            let aim = match (aimed, settings.follow, fits.first()) {
-                (None, Follow::Track, _) | (None, _, None) => Direction::Tracked(flat),
-                (Some(look), ..) => held(look, DVec3::Y),
-                (None, _, Some(fit)) => held(fit.look, fit.up),
+            let widest_deg = flat.fov_deg(half_height * aspect.max(1.0));
+            if settings.field_of_view == FieldOfView::Fitting && widest_deg > limit_deg {
+                continue;
+            }
+            let aim = match (settings.follow, fits.first()) {
+                (Follow::Track, _) | (_, None) => Direction::Tracked(flat),
+                (_, Some(fit)) => held(fit.look, fit.up),
             };
             return frame(flat.projection(fov_deg), aim, false).checked(settings);
         }
-        let (flat, _) = candidates(settings.projection)[0];
-        let fov_deg = match settings.field_of_view {
-            FieldOfView::Degrees(fov_deg) => fov_deg,
-            FieldOfView::Fitting => OBSERVER_FOV_DEG,
-        };
-        let look = aimed.unwrap_or(heading);
         let is_cut = settings.field_of_view == FieldOfView::Fitting;
-        frame(flat.projection(fov_deg), held(look, DVec3::Y), is_cut).checked(settings)
+        let look = match is_cut {
+            true => heading,
+            false => middle_of_sky(&all),
+        };
+        let projection = first.projection(settings.fov_deg());
+        frame(projection, held(look, DVec3::Y), is_cut).checked(settings)
     }
 
     /// This frame, if it has cameras.
@@ -227,17 +242,6 @@ impl Flat {
             Self::Stereographic => Projection::Stereographic { vertical_fov_deg },
         }
     }
-}
-
-/// The fit for cameras that look along `look`.
-fn fit_along(flat: Flat, look: DVec3, sky: &[DVec3], aspect: f64) -> Option<Fit> {
-    let look = look.try_normalize()?;
-    let (low, high) = in_plane(flat, axes(look, DVec3::Y), sky)?;
-    Some(Fit {
-        look,
-        up: DVec3::Y,
-        half_height: half_height((low, high), aspect),
-    })
 }
 
 /// The direction in which a picture has to be least high to show everything; `None` if a picture cannot.
@@ -387,6 +391,8 @@ mod tests {
                         sky.iter().all(|&direction| shows(&camera, direction)),
                         "{context}"
                     );
+                    // A ring of more than 90 degrees is one of less about the opposite direction.
+                    let angle_deg = angle_deg.min(180.0 - angle_deg);
                     let higher = f64::from(height) / f64::from(width);
                     let fov = vertical_deg(facts.projection);
                     // A wide picture in perspective has more degrees in its middle than at its edges.

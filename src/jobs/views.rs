@@ -16,6 +16,7 @@ use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
 use super::progress::Progress;
 use super::rendered::{EmptyView, RenderError, Rendered, ViewCost};
 use super::seen::{seen_vertices, sky_of};
+use super::sky_grid::{draw_heading, draw_sky_grid};
 use crate::effects::Doppler;
 use crate::material::Part;
 use crate::pipeline::{PlacedScene, PlacedSceneError, SurfaceOptions};
@@ -168,10 +169,17 @@ impl<'a> Views<'a> {
         let edges = self.set_ghosts(&mut scenery, ghosts, &camera, DVec3::ZERO);
         let (mut picture, cost) = self.take(&scenery, &camera, viewpoint)?;
         scenery.draw(&mut picture, &camera, viewpoint, &edges);
+        let background = self.settings.background;
+        // Before the marks, which are no sign of an object.
+        let is_empty = picture.bytes().chunks(3).all(|pixel| pixel == background.0);
+        if self.settings.guides.sky_grid {
+            draw_sky_grid(&mut picture, &camera, viewpoint, &scenery, background);
+            if let Some(heading) = moment.heading_own() {
+                draw_heading(&mut picture, &camera, heading, background);
+            }
+        }
         self.at_rest = Some(scenery).filter(|_| self.by_rays);
         self.rendered.costs.push(cost);
-        let background = self.settings.background.0;
-        let is_empty = picture.bytes().chunks(3).all(|pixel| pixel == background);
         if is_empty {
             let look = middle_of_sky(&places);
             self.rendered.empty.push(EmptyView { step, look });

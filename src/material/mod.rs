@@ -7,6 +7,7 @@
 mod appearance;
 mod error;
 mod material;
+mod normals;
 mod part;
 mod pixels;
 mod properties;
@@ -16,6 +17,7 @@ pub(crate) use appearance::Slot;
 pub use error::MaterialError;
 pub(crate) use material::position;
 pub use material::{AlphaMode, Material};
+pub use normals::{Crease, Normals, UnknownNormals};
 pub use part::{Model, Part};
 pub use pixels::PictureError;
 pub(crate) use pixels::decode;

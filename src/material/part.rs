@@ -13,8 +13,10 @@ use crate::mesh::{Mesh, MeshError};
 pub struct Part {
     /// As the source names it; empty where there is only one and it needs no name.
     pub name: String,
-    /// The geometry, always with normals.
+    /// The geometry; with normals unless [`Normals::None`](super::Normals::None) was asked for.
     mesh: Mesh,
+    /// The geometry as the source has it where it has no normals, until it is known which ones it should get.
+    unshaded: Option<Mesh>,
     /// What it is made of; shared by all parts made of the same.
     pub material: Option<Arc<Material>>,
     /// What else the source says of it, which means nothing here: the `extras` of glTF, of the `node`, the
@@ -33,13 +35,15 @@ impl Part {
         mesh: Mesh,
         material: Option<Arc<Material>>,
     ) -> Result<Self, MeshError> {
-        let mesh = match mesh.normals() {
-            Some(_) => mesh,
-            None => mesh.with_flat_normals()?,
+        let unshaded = mesh.normals().is_none().then(|| mesh.clone());
+        let mesh = match &unshaded {
+            None => mesh,
+            Some(_) => mesh.with_flat_normals()?,
         };
         Ok(Self {
             name: name.into(),
             mesh,
+            unshaded,
             material,
             extras: None,
         })
@@ -50,19 +54,25 @@ impl Part {
     pub fn transformed(self, transform: &DAffine3) -> Self {
         Self {
             mesh: self.mesh.transformed(transform),
+            unshaded: self.unshaded.map(|mesh| mesh.transformed(transform)),
             ..self
         }
     }
 
-    /// The same part with other geometry, which has normals.
+    /// The same part with other geometry, which has the normals that it should have.
     pub(crate) fn with_mesh(&self, mesh: Mesh) -> Self {
-        debug_assert!(mesh.normals().is_some());
         Self {
             name: self.name.clone(),
             mesh,
+            unshaded: None,
             material: self.material.clone(),
             extras: self.extras.clone(),
         }
+    }
+
+    /// The geometry without normals, if the source has none and nobody has said yet which ones it should get.
+    pub(super) fn unshaded(&self) -> Option<&Mesh> {
+        self.unshaded.as_ref()
     }
 
     /// The geometry.

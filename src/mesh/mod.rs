@@ -2,6 +2,7 @@
 
 mod edges;
 mod mesh;
+mod smooth;
 
 pub use mesh::{Mesh, MeshError};
 pub(crate) use mesh::{check_triangles, unit_or_zero};

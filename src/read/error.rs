@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use super::EXPECTED_MODEL;
+use super::text::shown;
 use crate::material::MaterialError;
 use crate::mesh::MeshError;
 
@@ -15,7 +17,7 @@ use crate::mesh::MeshError;
 #[non_exhaustive]
 pub enum ReadError {
     /// A name that says nothing about the content, and content that does not either.
-    #[error("unknown kind of file {extension:?}, expected .glb, .gltf or .obj")]
+    #[error("unknown kind of file {extension:?}, expected {EXPECTED_MODEL}")]
     UnknownExtension {
         /// What the name ends in; empty where it has no extension.
         extension: String,
@@ -149,6 +151,27 @@ pub enum ReadError {
         /// What is wrong with it.
         problem: ObjProblem,
     },
+    /// A line of a PLY, STL or OFF file.
+    #[error("line {line}: {problem}")]
+    Line {
+        /// Which one, from 1.
+        line: usize,
+        /// What is wrong with it.
+        problem: DataProblem,
+    },
+    /// An element of a binary PLY or STL file.
+    #[error("{element} {index}: {problem}")]
+    Element {
+        /// What such elements are called.
+        element: String,
+        /// Which one, from 0.
+        index: u64,
+        /// What is wrong with it.
+        problem: DataProblem,
+    },
+    /// A PLY, STL or OFF file as a whole.
+    #[error(transparent)]
+    Data(DataProblem),
     /// A vertex so far away that computing with it would overflow.
     #[error(
         "{coordinate:e} is a coordinate of vertex {vertex} of part {part:?}, expected at most {limit:e}"
@@ -456,6 +479,89 @@ pub enum ObjProblem {
         /// How many vertices there are: before the corner, if it counts from there, else in the file.
         count: usize,
     },
+}
+
+/// What is wrong with a PLY, STL or OFF file, or with a line or an element of it.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum DataProblem {
+    /// Not a number, or not one that is possible here.
+    #[error("{found:?}, expected {expected}")]
+    Word {
+        /// What stands there.
+        found: String,
+        /// What should stand there.
+        expected: &'static str,
+    },
+    /// A coordinate that is NaN or infinite.
+    #[error("{property} is {found}, expected a finite number")]
+    NotFinite {
+        /// Which number.
+        property: String,
+        /// Its value.
+        found: String,
+    },
+    /// Too few numbers.
+    #[error("{found} numbers, expected {expected}")]
+    Count {
+        /// How many there are.
+        found: usize,
+        /// How many there should be, and of which kind.
+        expected: String,
+    },
+    /// A corner at a vertex that is not there.
+    #[error("a corner at vertex {found}, expected one of the {vertices} vertices, from 0")]
+    Corner {
+        /// What stands there.
+        found: String,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// A list whose length is negative or no whole number.
+    #[error("a list of {found} values, expected a whole number that is not negative")]
+    Length {
+        /// Its length.
+        found: String,
+    },
+    /// A text that ends before it is complete.
+    #[error("the file ends, expected {expected}")]
+    End {
+        /// What should follow.
+        expected: String,
+    },
+    /// More elements than the rest of the file has room for.
+    #[error(
+        "{count} {element} elements need at least {needed} bytes, but {left} are left: the file is cut off"
+    )]
+    CutOff {
+        /// How many elements there should be.
+        count: u64,
+        /// What they are called.
+        element: String,
+        /// How many bytes they need.
+        needed: u128,
+        /// How many bytes there are.
+        left: usize,
+    },
+    /// A file with nothing that says where its vertices are.
+    #[error("no {missing}, expected {expected}")]
+    Missing {
+        /// What is not there.
+        missing: &'static str,
+        /// Where it should be.
+        expected: &'static str,
+    },
+}
+
+/// Bytes of a word that an error shows at most.
+const MAX_WORD: usize = 80;
+
+impl DataProblem {
+    /// A word of a text that should be something else.
+    pub(super) fn word(found: &[u8], expected: &'static str) -> Self {
+        let found = shown(&found[..found.len().min(MAX_WORD)]).into_owned();
+        Self::Word { found, expected }
+    }
 }
 
 /// An error and its causes in one line.

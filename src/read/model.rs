@@ -3,18 +3,24 @@
 use std::path::Path;
 
 use super::bytes::Bytes;
-use super::gltf::{is_glb, read_gltf};
+use super::gltf::read_gltf;
+use super::kind::Kind;
 use super::notes::unique;
 use super::obj::read_obj_bytes;
+use super::off::read_off;
+use super::ply::read_ply;
+use super::stl::read_stl;
 use super::uri::Folder;
 use super::{Access, Findings, Reach, ReadError};
 use crate::material::Model;
 
-/// Reads the model in a GLB, glTF or OBJ file, and says what of it was left out and which files were read.
+/// Reads the model in a GLB, glTF, OBJ, PLY, STL or OFF file, and says what of it was left out and which files were read.
 ///
 /// glTF 2.0: all triangles of the default scene, with the transforms of their nodes, in the default pose of
 /// skins and morph targets. OBJ: all faces. Either with normals, texture coordinates, colours and
-/// materials; those of glTF with everything that they say. Of the files that it names, those are read that
+/// materials; those of glTF with everything that they say. PLY, STL and OFF: all faces, with coordinates as they stand, for
+/// these formats state neither axes nor units; PLY and OFF with normals, colours and texture coordinates of vertices, STL
+/// with vertices of equal positions joined and without its normals, which the corners give. Of the files that it names, those are read that
 /// [`Access::default`] allows.
 ///
 /// # Errors
@@ -34,6 +40,17 @@ pub fn read_model(path: &Path) -> Result<(Model, Findings), ReadError> {
 /// Anything that keeps a part of the surface from being read as glTF 2.0 defines it.
 pub fn read_gltf_bytes(bytes: &[u8], folder: &Path) -> Result<(Model, Findings), ReadError> {
     Access::default().read_gltf_bytes(bytes, folder)
+}
+
+/// Reads the bytes of a GLB, glTF, PLY, STL or OFF file, which the content tells apart.
+///
+/// As [`read_gltf_bytes`] otherwise; a part without a name is called `mesh`.
+///
+/// # Errors
+///
+/// As [`read_model`].
+pub fn read_model_bytes(bytes: &[u8], folder: &Path) -> Result<(Model, Findings), ReadError> {
+    Access::default().read_model_bytes(bytes, folder)
 }
 
 impl Access {
@@ -61,6 +78,22 @@ impl Access {
         let bytes = Bytes::Held(bytes.into());
         read_gltf(bytes, Folder::within(folder, self.reach(folder)))
     }
+
+    /// As [`read_model_bytes`].
+    ///
+    /// # Errors
+    ///
+    /// As [`read_model_bytes`], and a buffer that may not be read.
+    pub fn read_model_bytes(
+        &self,
+        bytes: &[u8],
+        folder: &Path,
+    ) -> Result<(Model, Findings), ReadError> {
+        let bytes = Bytes::Held(bytes.into());
+        let kind = Kind::of_content(&bytes)?.unwrap_or(Kind::Gltf);
+        let folder = Folder::within(folder, self.reach(folder));
+        read_kind(kind, bytes, folder, "mesh")
+    }
 }
 
 /// Reads the model in a file that another one names.
@@ -73,19 +106,29 @@ fn read_bytes(bytes: Bytes, path: &Path, reach: Reach) -> Result<(Model, Finding
     let extension = path.extension().unwrap_or_default();
     let extension = extension.to_string_lossy().to_lowercase();
     let folder = Folder::within(path.parent().unwrap_or(Path::new("")), reach);
-    let is_gltf = match extension.as_str() {
-        "glb" | "gltf" => true,
-        "obj" => false,
-        _ if is_glb(&bytes)? => true,
-        _ => return Err(ReadError::UnknownExtension { extension }),
+    let kind = match Kind::of_extension(&extension) {
+        Some(kind) => kind,
+        None => Kind::of_content(&bytes)?.ok_or(ReadError::UnknownExtension { extension })?,
     };
-    let (model, mut findings) = if is_gltf {
-        read_gltf(bytes, folder)?
-    } else {
-        let stem = path.file_stem().unwrap_or_default();
-        read_obj_bytes(&bytes.into_vec()?, folder, &stem.to_string_lossy())?
-    };
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let (model, mut findings) = read_kind(kind, bytes, folder, &stem)?;
     findings.files.insert(0, path.to_owned());
     findings.notes = unique(findings.notes);
     Ok((model, findings))
+}
+
+/// Reads a file of this format; parts that have no name there get that of the file.
+fn read_kind(
+    kind: Kind,
+    bytes: Bytes,
+    folder: Folder,
+    name: &str,
+) -> Result<(Model, Findings), ReadError> {
+    match kind {
+        Kind::Gltf => read_gltf(bytes, folder),
+        Kind::Obj => read_obj_bytes(&bytes.into_vec()?, folder, name),
+        Kind::Ply => read_ply(&bytes.into_vec()?, name),
+        Kind::Stl => read_stl(&bytes.into_vec()?, name),
+        Kind::Off => read_off(&bytes.into_vec()?, name),
+    }
 }

@@ -90,6 +90,23 @@ pub enum Note {
         /// How many.
         count: usize,
     },
+    /// Triangles that have no area since two of their corners are one vertex.
+    EqualCorners {
+        /// How many.
+        count: usize,
+    },
+    /// Vertices that no triangle uses.
+    UnusedVertices {
+        /// How many.
+        count: usize,
+    },
+    /// Normals of facets that contradict the order of the corners, which decides.
+    FacetNormals {
+        /// Which part.
+        mesh: String,
+        /// How many facets.
+        count: usize,
+    },
     /// Indices that do not make up a triangle.
     LeftOver {
         /// Which primitive.
@@ -111,8 +128,17 @@ pub enum Note {
         /// How many vertices.
         count: usize,
     },
-    /// Colours of vertices in an OBJ file, where nobody says what they mean.
+    /// Colours of vertices in a file of a format that does not say what they mean.
     ColorsFromSrgb,
+    /// Parts without normals that are shaded flat; bytes of a step in a glTF file without refinement.
+    FlatForWantOfNormals {
+        /// As they are.
+        flat: u64,
+        /// With smooth normals, at least.
+        smooth: u64,
+        /// Without normals.
+        none: u64,
+    },
     /// A mesh that has other forms.
     Morph {
         /// Which mesh.
@@ -305,6 +331,21 @@ impl fmt::Display for Note {
                 let those = plural(*count, "face");
                 write!(f, "{those} of fewer than three corners skipped")
             }
+            Self::EqualCorners { count } => {
+                let those = plural(*count, "triangle");
+                write!(f, "{those} with two corners at one vertex skipped")
+            }
+            Self::UnusedVertices { count } => {
+                let those = plural(*count, "vertex");
+                write!(f, "{those} of no triangle skipped")
+            }
+            Self::FacetNormals { mesh, count } => {
+                let those = plural(*count, "facet normal");
+                write!(
+                    f,
+                    "{mesh}: {those} against the order of the corners ignored"
+                )
+            }
             Self::LeftOver { place, count } => {
                 let those = plural(*count, "left-over index");
                 write!(
@@ -320,6 +361,14 @@ impl fmt::Display for Note {
                 write!(f, "{mesh}: {those} outside 0 to 1 clamped")
             }
             Self::ColorsFromSrgb => write!(f, "vertex colours: taken as sRGB, made linear"),
+            Self::FlatForWantOfNormals { flat, smooth, none } => {
+                let [flat, smooth, none] = [flat, smooth, none].map(|&bytes| bytes as f64 / 1e6);
+                write!(
+                    f,
+                    "no normals: facets are shaded flat, with three vertices each, {flat:.1} MB a step; shared vertices need \
+                     about {smooth:.1} MB with --normals smooth, {none:.1} MB with --normals none"
+                )
+            }
             Self::Morph { mesh, weights } if weights.iter().all(|&weight| weight == 0.0) => {
                 let targets = plural(weights.len(), "morph target");
                 write!(f, "{mesh}: {targets} left at weight 0")

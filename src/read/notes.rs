@@ -41,6 +41,7 @@ impl Note {
             Self::ColorsClamped { mesh, count }
             | Self::NoWeights { mesh, count }
             | Self::Weights { mesh, count }
+            | Self::FacetNormals { mesh, count }
             | Self::Normals { mesh, count } => {
                 (mesh.clone(), mesh_or_part(mesh), mesh, Some(count))
             }

@@ -26,6 +26,11 @@ pub(super) fn as_bytes_of_ascii(file: &[u8]) -> Cow<'_, [u8]> {
     text.into_bytes().into()
 }
 
+/// The bytes of a text file without a byte-order mark of UTF-8 before them.
+pub(super) fn without_mark(file: &[u8]) -> &[u8] {
+    file.strip_prefix(MARK).unwrap_or(file)
+}
+
 /// The lines of a file, without their ends and byte-order marks.
 pub(super) fn lines(file: &[u8]) -> impl Iterator<Item = &[u8]> {
     let mut rest = Some(file).filter(|file| !file.is_empty());
@@ -38,7 +43,7 @@ pub(super) fn lines(file: &[u8]) -> impl Iterator<Item = &[u8]> {
             behind => &behind[1..],
         });
         rest = rest.filter(|rest| !rest.is_empty());
-        Some(line.strip_prefix(MARK).unwrap_or(line))
+        Some(without_mark(line))
     })
 }
 
@@ -50,12 +55,23 @@ pub(super) fn split_statement(line: &[u8]) -> (&[u8], &[u8]) {
     (statement, rest.trim_ascii())
 }
 
+/// The words of a line.
+pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let words = line.split(u8::is_ascii_whitespace);
+    words.filter(|word| !word.is_empty())
+}
+
 /// Bytes as text: UTF-8, or else Latin-1.
 pub(super) fn shown(bytes: &[u8]) -> Cow<'_, str> {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.into(),
         Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect(),
     }
+}
+
+/// A finite number.
+pub(super) fn number(word: &str) -> Option<f64> {
+    word.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
 /// Text without a comment behind it.

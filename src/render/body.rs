@@ -11,7 +11,7 @@ use super::shading::Facing;
 use super::shape_placement::SmoothHit;
 use super::sphere::Ball;
 use super::turned::Turned;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, unit_or_zero};
 use crate::scene::Emission;
 use crate::spacetime::{Velocity, ViewModel, WorldLine, unit};
 
@@ -258,11 +258,18 @@ struct Attributes {
 fn of_triangle(mesh: &Mesh, paint: &Paint, hit: &MeshHit) -> Attributes {
     let corners = hit.corners.map(|corner| corner as usize);
     let between = corners.into_iter().zip(hit.weights);
-    let normals = mesh.normals().unwrap_or_default();
-    let normal = between
-        .clone()
-        .filter_map(|(corner, weight)| Some(*normals.get(corner)? * weight))
-        .sum();
+    let normal = match mesh.normals() {
+        Some(normals) => {
+            let weighted = between.clone();
+            weighted
+                .map(|(corner, weight)| normals[corner] * weight)
+                .sum()
+        }
+        None => {
+            let [a, b, c] = corners.map(|corner| mesh.positions()[corner]);
+            unit_or_zero((b - a).cross(c - a))
+        }
+    };
     let mut texture = TexturePlaces::default();
     for (place, &set) in texture.iter_mut().zip(paint.texture_sets()) {
         let set = mesh.texture_coordinates().get(set);

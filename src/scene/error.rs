@@ -38,6 +38,9 @@ pub enum InvalidScene {
         /// The key that does not belong.
         field: &'static str,
     },
+    /// Normals asked for of something that brings its own.
+    #[error("object \"{0}\" is a shape, which has its own normals; \"normals\" is for files")]
+    NormalsOfShape(String),
     /// A lamp that rides on nothing.
     #[error("lamps[{0}] rides on \"{1}\", expected the name of an object")]
     LampObject(usize, String),

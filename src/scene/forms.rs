@@ -126,7 +126,7 @@ pub(super) fn file<'de, D: Deserializer<'de>>(
     let name = String::deserialize(deserializer)?;
     if name.is_empty() {
         return Err(D::Error::custom(
-            "the file name is empty, expected a glTF, GLB or OBJ file",
+            "the file name is empty, expected a glTF, GLB, OBJ, PLY, STL or OFF file",
         ));
     }
     Ok(Some(name.into()))

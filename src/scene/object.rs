@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use super::forms::{self, FromObject, Keyed, VelocityForm};
 use super::{Emission, InvalidScene, Place, Scale, Tolerance};
-use crate::material::Model;
+use crate::material::{Model, Normals};
 use crate::shape::{Appearance, Color, Shape};
 use crate::spacetime::{Event, Rotation, Velocity, ViewModel, WorldLine};
 
@@ -37,6 +37,8 @@ pub struct Object {
     pub tolerance: Option<Tolerance>,
     /// Which effects of special relativity its shape is shown with; if absent, those that the scene file says, or both.
     pub model: Option<ViewModel>,
+    /// Which normals the parts of its file get; if absent, those of the file.
+    pub normals: Option<Normals>,
     /// Its own light, if it is a black body; pictures and colours of vertices show it in place of its material.
     pub emission: Option<Emission>,
 }
@@ -44,7 +46,7 @@ pub struct Object {
 /// Where the geometry of an object comes from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
-    /// A glTF, GLB or OBJ file.
+    /// A glTF, GLB, OBJ, PLY, STL or OFF file.
     File(PathBuf),
     /// A shape that the program makes itself.
     Shape(Shape, Appearance),
@@ -64,6 +66,7 @@ impl Object {
             velocity: Velocity::ZERO,
             tolerance: None,
             model: None,
+            normals: None,
             emission: None,
         }
     }
@@ -93,13 +96,13 @@ impl Object {
 #[serde(deny_unknown_fields)]
 #[schemars(extend(
     "oneOf" = [{ "required": ["file"] }, { "required": ["shape"] }],
-    "dependentRequired" = { "color": ["shape"], "checker": ["shape"] },
+    "dependentRequired" = { "color": ["shape"], "checker": ["shape"], "normals": ["file"] },
 ))]
 struct ObjectFields {
     /// Names the object in the output; unique in the scene.
     #[schemars(length(min = 1))]
     name: String,
-    /// A glTF, GLB or OBJ file, relative to the scene file. Either this or `shape`.
+    /// A glTF, GLB, OBJ, PLY, STL or OFF file, relative to the scene file. Either this or `shape`.
     #[serde(default, deserialize_with = "forms::file")]
     #[schemars(with = "String", length(min = 1))]
     file: Option<PathBuf>,
@@ -130,6 +133,12 @@ struct ObjectFields {
     tolerance: Option<Tolerance>,
     /// Which effects of special relativity this object's shape is shown with; those that the scene says if absent.
     model: Option<ViewModel>,
+    /// Which normals the parts of a file get: "source", those of the file, and of flat facets for a part without any; "smooth",
+    /// with shared vertices, parted along creases of more than 60 degrees, or of so many in "smooth:30"; "flat"; or "none".
+    /// All but "source" replace the normals of the file.
+    #[serde(default)]
+    #[schemars(with = "Normals")]
+    normals: Option<Normals>,
     /// Makes the object a black body, which needs no lamp; its material then has no say.
     #[serde(default)]
     #[schemars(with = "Option<Emission>")]
@@ -162,6 +171,9 @@ impl TryFrom<FromObject<ObjectFields>> for Object {
                 return Err(InvalidScene::Source { name, found });
             }
         };
+        if fields.normals.is_some() && !matches!(source, Source::File(_)) {
+            return Err(InvalidScene::NormalsOfShape(name));
+        }
         Ok(Self {
             name,
             source,
@@ -171,6 +183,7 @@ impl TryFrom<FromObject<ObjectFields>> for Object {
             velocity: fields.velocity,
             tolerance: fields.tolerance,
             model: fields.model,
+            normals: fields.normals,
             emission: fields.emission.map(|FromObject(emission)| emission),
         })
     }

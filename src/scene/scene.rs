@@ -9,9 +9,10 @@ use super::forms::{FromObject, Keyed, Steps};
 use super::lamp_form::LampFields;
 use super::observer::{self, ObserverFields};
 use super::{
-    Attributes, Carrier, Effects, InvalidScene, Lamp, LampSource, Object, Observer, Tolerance,
-    Units,
+    Attributes, Carrier, Effects, InvalidScene, Lamp, LampSource, Object, Observer, Source,
+    Tolerance, Units,
 };
+use crate::material::Normals;
 use crate::spacetime::{Flight, Moment, ViewModel};
 
 /// A scene: an observer, objects, and the steps at which the observer looks.
@@ -152,6 +153,17 @@ impl Scene {
     #[must_use]
     pub fn with_attributes(mut self, attributes: Attributes) -> Self {
         self.attributes = attributes;
+        self
+    }
+
+    /// The scene with these normals asked for of every object that comes from a file.
+    #[must_use]
+    pub fn with_normals(mut self, normals: Normals) -> Self {
+        for object in &mut self.objects {
+            if let Source::File(_) = object.source {
+                object.normals = Some(normals);
+            }
+        }
         self
     }
 

@@ -9,7 +9,7 @@
 
 use std::io::Write;
 
-use glam::{DVec3, Vec4};
+use glam::Vec4;
 
 use super::layer::{Layer, Numbers, Scalar, layers};
 use super::{Export, WriteError};
@@ -61,9 +61,12 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
     write!(
         writer,
         "element vertex {vertices}\n\
-         property double x\nproperty double y\nproperty double z\n\
-         property float nx\nproperty float ny\nproperty float nz\n",
+         property double x\nproperty double y\nproperty double z\n",
     )?;
+    let with_normals = layers.iter().all(|layer| layer.mesh.normals().is_some());
+    if with_normals {
+        writer.write_all(b"property float nx\nproperty float ny\nproperty float nz\n")?;
+    }
     for (scalar, is_double) in scalars.first().into_iter().flatten().zip(&doubles) {
         let kind = if *is_double { "double" } else { "float" };
         writeln!(writer, "property {kind} {}", property(scalar))?;
@@ -79,7 +82,13 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
     )?;
 
     for (layer, scalars) in layers.iter().zip(&scalars) {
-        write_vertices(&mut writer, layer, scalars, &doubles, with_colors)?;
+        write_vertices(
+            &mut writer,
+            layer,
+            scalars,
+            &doubles,
+            (with_normals, with_colors),
+        )?;
     }
     let mut first = 0u32;
     for layer in &layers {
@@ -135,17 +144,19 @@ fn write_vertices(
     layer: &Layer<'_>,
     scalars: &[Scalar<'_>],
     doubles: &[bool],
-    with_colors: bool,
+    (with_normals, with_colors): (bool, bool),
 ) -> Result<(), WriteError> {
     let mesh = layer.mesh;
     for (vertex, position) in mesh.positions().iter().enumerate() {
-        let normal = mesh
-            .normals()
-            .map_or(DVec3::ZERO, |normals| normals[vertex]);
+        let normals = mesh.normals().filter(|_| with_normals);
         for coordinate in layer.moved(*position).to_array() {
             writer.write_all(&coordinate.to_le_bytes())?;
         }
-        for value in normal.to_array() {
+        for value in normals
+            .map(|normals| normals[vertex].to_array())
+            .into_iter()
+            .flatten()
+        {
             writer.write_all(&(value as f32).to_le_bytes())?;
         }
         for (scalar, is_double) in scalars.iter().zip(doubles) {

@@ -93,8 +93,12 @@ fn min_ply(parts: &[&Part], steps: u64, scalars: u64) -> Result<u64, WriteError>
         true => 4,
         false => 0,
     };
-    // Three f64 and three f32 a vertex, a byte and three u32 a triangle.
-    Ok((36 + 4 * scalars + color) * vertices + 13 * count(|mesh| mesh.triangles().len()))
+    let normal = match parts.iter().all(|part| part.mesh().normals().is_some()) {
+        true => 12,
+        false => 0,
+    };
+    // Three f64 a vertex and what else it has, a byte and three u32 a triangle.
+    Ok((24 + normal + 4 * scalars + color) * vertices + 13 * count(|mesh| mesh.triangles().len()))
 }
 
 #[cfg(test)]

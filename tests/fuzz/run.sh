@@ -12,7 +12,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds=${1:?"expected how many seconds each target runs"}
 shift
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(gltf obj scene export render)
+[ ${#targets[@]} -gt 0 ] || targets=(gltf obj scan scene export render)
 
 # Dependencies are those that the tests have compiled already. The library has no unsafe code: no address sanitizer is needed.
 RUSTC_WORKSPACE_WRAPPER=$PWD/tests/fuzz/instrumented.sh CARGO_INCREMENTAL=0 \

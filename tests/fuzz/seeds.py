@@ -360,6 +360,55 @@ def obj_files():
     yield "curves", TRIANGLE_OBJ + "cstype bezier\ndeg 2\ncurv 0 1 1 2 3\nend\np 1\nl 1 2\nf 1 2 3\n"
 
 
+def scan_files():
+    """PLY, STL and OFF, which their first bytes tell apart."""
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+    vertex = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    face = "element face 1\nproperty list uchar int vertex_indices\n"
+    ply = lambda order, elements: f"ply\nformat {order} 1.0\n{elements}end_header\n".encode()
+    places = b"0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+    yield "text.ply", ply("ascii", vertex + face) + places + b"4 0 1 2 3\n"
+    for order, sign in {"little": "<", "big": ">"}.items():
+        data = b"".join(struct.pack(sign + "3f", *corner) for corner in corners) + struct.pack(sign + "B4i", 4, 0, 1, 2, 3)
+        yield f"{order}.ply", ply(f"binary_{order}_endian", vertex + face) + data
+        yield f"{order}_cut_off.ply", ply(f"binary_{order}_endian", vertex + face) + data[:-3]
+    everything = "".join(
+        f"property {kind} {name}\n"
+        for kind, name in [("double", "nx"), ("double", "ny"), ("double", "nz"), ("uchar", "red"), ("ushort", "green")]
+        + [("float", "blue"), ("char", "alpha"), ("float", "s"), ("float", "t"), ("int", "other")]
+    )
+    numbers = b"0 0 1 255 65535 0.5 127 0.25 0.75 -1\n"
+    lines = b"".join(place + b" " + numbers for place in places.splitlines())
+    yield "everything.ply", ply("ascii", vertex + everything + face) + lines + b"4 0 1 2 3\n"
+    strips = "element tristrips 1\nproperty list int int vertex_indices\n"
+    yield "strips.ply", ply("ascii", strips + vertex) + b"8 0 1 3 2 -1 0 1 2\n" + places
+    yield "cloud.ply", ply("ascii", vertex) + places
+    yield "huge_counts.ply", ply("binary_little_endian", (vertex + face).replace(" 4", " 4000000000")) + places
+    yield "huge_count_of_nothing.ply", ply("ascii", "element nothing 18446744073709551615\n" + vertex + face) + places
+    long_list = "element face 1\nproperty list uint double vertex_index\n"
+    yield "huge_list.ply", ply("binary_little_endian", long_list) + b"\xff\xff\xff\xff" + places
+    yield "float_list.ply", ply("ascii", vertex + face.replace("uchar int", "float double")) + places + b"1e9 0 1 2 3\n"
+    yield "carriage_returns.ply", (ply("ascii", vertex + face) + places + b"4 0 1 2 3\n").replace(b"\n", b"\r")
+
+    facet = struct.pack("<12fH", 0, 0, 1, *corners[0], *corners[1], *corners[2], 0)
+    stl = lambda start, count, data: start.ljust(80) + struct.pack("<I", count) + data
+    yield "binary.stl", stl(b"", 1, facet)
+    yield "binary_solid.stl", stl(b"solid a", 2, facet + facet[:-2] + b"\x1f\x80")
+    yield "binary_cut_off.stl", stl(b"", 0xFFFFFFFF, facet)
+    yield "binary_without_area.stl", stl(b"", 1, struct.pack("<12fH", *[0] * 13))
+    text = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+    yield "text.stl", f"solid a\n{text}endsolid a\nsolid b\n{text}endsolid\n".encode()
+    yield "ends_early.stl", f"solid a\n{text[:50]}".encode()
+
+    square = "4 1 4\n0 0 0{0}\n1 0 0{0}\n1 1 0{0}\n0 1 0{0}\n4 0 1 2 3 255 0 0\n"
+    yield "plain.off", ("OFF\n" + square.format("")).encode()
+    yield "everything.off", ("STCNOFF\n" + square.format(" 0 0 1 255 0 0 255 0.5 0.5")).encode()
+    yield "no_space.off", ("OFF" + square.format("")).encode()
+    yield "binary.off", b"OFF BINARY\n" + bytes(40)
+    yield "huge_counts.off", b"OFF\n4294967296 18446744073709551615 0\n0 0 0\n"
+    yield "huge_face.off", ("OFF\n" + square.format("").replace("4 0 1", "4294967295 0 1")).encode()
+
+
 def scenes():
     one = '{"objects":[{"name":"a","shape":'
     sphere = '{"sphere":{"radius":1}}'
@@ -428,6 +477,7 @@ def main():
     inputs = {
         "gltf": gltf_files(),
         "obj": ((name, text.encode()) for name, text in obj_files()),
+        "scan": scan_files(),
         "scene": ((name, text.encode()) for name, text in scenes()),
         "export": [*shapes(), *faults()],
         "render": [*shapes(), *faults()],

@@ -84,6 +84,7 @@ mod cli {
     mod flags;
     mod flight;
     mod models;
+    mod normals;
     mod render;
 }
 

@@ -14,7 +14,9 @@ use glam::{DVec2, DVec3};
 
 use crate::read::note::{Note, plural};
 use crate::read::notes::add_note;
-use crate::read::text::{as_bytes_of_ascii, lines, shown, split_statement, without_comment};
+use crate::read::text::{
+    as_bytes_of_ascii, lines, number, shown, split_statement, without_comment,
+};
 use crate::read::{ObjProblem, ReadError};
 
 /// What an OBJ file says.
@@ -380,11 +382,6 @@ fn no_such_vertex(word: &str, index: i64, count: usize) -> ObjProblem {
         index,
         count,
     }
-}
-
-/// A finite number.
-fn number(word: &str) -> Option<f64> {
-    word.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
 #[cfg(test)]

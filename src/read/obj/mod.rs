@@ -7,6 +7,5 @@ mod mtl_map;
 mod mtl_pack;
 mod ordinary;
 mod packing;
-mod polygon;
 
 pub(super) use model::read_obj_bytes;

@@ -4,15 +4,13 @@ use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3, Vec2, Vec4};
+use glam::{DVec2, DVec3};
 use serde_json::json;
 
 use super::lines::{Faces, Statements, read_statements};
 use super::mtl::read_library;
 use super::mtl_map::Pictures;
 use super::ordinary::read_ordinary;
-use super::polygon::triangulate;
-use crate::effects::linear_of_srgb;
 use crate::material::{Material, Model, Part};
 use crate::mesh::{Mesh, MeshError};
 use crate::read::far::checked;
@@ -21,8 +19,10 @@ use crate::read::fitted::Fitted;
 use crate::read::names::tell_apart;
 use crate::read::normals::replace_zero_normals;
 use crate::read::note::Note;
+use crate::read::polygon::triangles;
 use crate::read::text::{shown, unquoted};
 use crate::read::uri::Folder;
+use crate::read::vertex::{clamped_colors, texture_coordinate};
 use crate::read::{Findings, ReadError};
 
 /// Bytes of a name that parts get at most: where a material of every part is behind it, the file has it once and
@@ -234,7 +234,7 @@ fn make_mesh(
         .iter()
         .map(|&[v, ..]| file.positions[v as usize - 1])
         .collect();
-    let triangles = triangles(faces, &indices, &positions);
+    let triangles = triangles(&faces.arities, &indices, &positions);
     let mut mesh = Mesh::new(positions, triangles)?;
     let normal = |&[.., vn]: &[u32; 3]| match vn {
         0 => DVec3::ZERO,
@@ -265,13 +265,12 @@ fn make_mesh(
     }
     if !file.colors.is_empty() {
         let colors = vertices.iter().map(|&[v, ..]| file.colors[v as usize - 1]);
-        let outside = |c: &DVec3| c.clamp(DVec3::ZERO, DVec3::ONE) != *c;
-        let count = colors.clone().filter(outside).count();
+        let (colors, count) = clamped_colors(colors.map(|color| color.extend(1.0)));
         if count > 0 {
             let mesh = format!("part {part:?}");
             notes.push(Note::ColorsClamped { mesh, count });
         }
-        mesh = mesh.with_colors(colors.map(linear_color).collect())?;
+        mesh = mesh.with_colors(colors)?;
     }
     Ok(mesh)
 }
@@ -290,41 +289,10 @@ fn vertices(corners: &[[u32; 3]]) -> (Vec<[u32; 3]>, Vec<u32>) {
     (vertices, indices)
 }
 
-/// The faces of a part as triangles.
-fn triangles(faces: &Faces, indices: &[u32], positions: &[DVec3]) -> Vec<[u32; 3]> {
-    let mut rest = indices;
-    let mut triangles = vec![];
-    for &arity in &faces.arities {
-        let (face, others) = rest.split_at(arity as usize);
-        rest = others;
-        if let &[a, b, c] = face {
-            triangles.push([a, b, c]);
-            continue;
-        }
-        let corners: Vec<DVec3> = face.iter().map(|&i| positions[i as usize]).collect();
-        let of_face = triangulate(&corners);
-        triangles.extend(of_face.into_iter().map(|corners| corners.map(|i| face[i])));
-    }
-    triangles
-}
-
-/// OBJ counts v from the lower edge of an image, glTF from the upper one.
-fn texture_coordinate(uv: &DVec2) -> Vec2 {
-    match uv.is_nan() {
-        true => Vec2::ZERO,
-        false => Vec2::new(uv.x as f32, (1.0 - uv.y) as f32),
-    }
-}
-
-/// Programs that write colours of vertices into OBJ files write them as on the screen, in sRGB.
-fn linear_color(srgb: DVec3) -> Vec4 {
-    let clamped = srgb.clamp(DVec3::ZERO, DVec3::ONE);
-    let [r, g, b] = clamped.to_array().map(|c| linear_of_srgb(c) as f32);
-    Vec4::new(r, g, b, 1.0)
-}
-
 #[cfg(test)]
 mod tests {
+    use glam::{Vec2, Vec4};
+
     use super::*;
 
     fn read(file: &str) -> (Model, Vec<Note>) {

@@ -13,7 +13,7 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 
 use super::lines::{Faces, Statements};
-use crate::read::text::split_statement;
+use crate::read::text::{split_statement, words};
 
 /// Characters of a number at most. With an exponent of two digits it is finite.
 const MAX_NUMBER: usize = 40;
@@ -237,11 +237,6 @@ impl Scan {
         file.parts = parts;
         is_whole.then_some(file)
     }
-}
-
-fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let words = text.split(u8::is_ascii_whitespace);
-    words.filter(|word| !word.is_empty())
 }
 
 /// Whether a word can be no other than a finite number or an error.

@@ -3,7 +3,7 @@
 mod targets;
 
 pub use cap::Cap;
-pub use targets::{Case, MEMORY, TARGETS, Target, export, gltf, obj, render, scene};
+pub use targets::{Case, MEMORY, TARGETS, Target, export, gltf, obj, render, scan, scene};
 
 /// Makes a program of a target, with the limit of memory.
 #[macro_export]

@@ -101,7 +101,7 @@ fn a_bare_mesh_needs_no_scene() {
         z + local
     );
 
-    // Unplaced, it stands off two diagonals.
+    // Unplaced, the observer passes at two diagonals, with the mesh on its right.
     workplace
         .run("export square.obj --report report.json")
         .success();
@@ -110,12 +110,12 @@ fn a_bare_mesh_needs_no_scene() {
         .unwrap();
     assert!((z - 2.0 * 8f64.sqrt()).abs() < 1e-12, "{z}");
     workplace
-        .run("export square.obj --direction 0,1,0 --report report.json")
+        .run("export square.obj --direction 0,0,-1 --report report.json")
         .success();
-    let y = workplace.read_json("report.json")["scene"]["observer_position"][1]
+    let x = workplace.read_json("report.json")["scene"]["observer_position"][0]
         .as_f64()
         .unwrap();
-    assert!((y + 2.0 * 8f64.sqrt()).abs() < 1e-12, "{y}");
+    assert!((x + 2.0 * 8f64.sqrt()).abs() < 1e-12, "{x}");
 }
 
 #[test]
@@ -221,9 +221,11 @@ fn missing_and_unknown_files_are_told_by_name() {
     workplace
         .run("export nosuch.glb")
         .error(&["nosuch.glb", "No such file"]);
-    workplace
-        .run("export ball.stl")
-        .error(&["ball.stl", "unknown extension", ".glb, .gltf, .obj"]);
+    workplace.run("export ball.fbx").error(&[
+        "ball.fbx",
+        "unknown extension",
+        ".glb, .gltf, .obj, .ply, .stl or .off; Blender or MeshLab",
+    ]);
     workplace
         .run("export ball.json -o out.stl")
         .error(&["out.stl", ".glb, .gltf or .ply"]);

@@ -194,7 +194,7 @@ fn pictures_have_models_side_by_side() {
     // One exposure for all columns: that of the bright photosurface darkens what is at rest beside it.
     let picture = |flags: &str| {
         let line = format!(
-            "render plain.json --steps 0 --size 40x30 --samples 1 --searchlight {flags} -o -"
+            "render plain.json --steps 0 --size 40x30 --fov 60 --samples 1 --searchlight {flags} -o -"
         );
         let bytes = workplace.run(&line).success().stdout;
         image::load_from_memory(&bytes).unwrap().into_rgb8()

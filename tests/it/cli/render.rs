@@ -25,11 +25,11 @@ fn every_built_in_scene_is_rendered_by_both_methods_and_from_outside() {
             "--view outside --full-sky",
         ] {
             let line =
-                format!("render --example {name} {how} --steps 0 --size 32x18 -o {name}.png");
+                format!("render --example {name} {how} --steps 0 --size 32x16 -o {name}.png");
             let run = workplace.run(&line).success();
             assert!(run.stdout.is_empty(), "{run}");
             let picture = workplace.read(&format!("{name}.png"));
-            assert_eq!(png_size(&picture), (32, 18), "{run}");
+            assert_eq!(png_size(&picture), (32, 16), "{run}");
         }
     }
 }
@@ -37,14 +37,16 @@ fn every_built_in_scene_is_rendered_by_both_methods_and_from_outside() {
 #[test]
 fn a_picture_for_each_step_or_one_for_stdout() {
     let workplace = Workplace::with_ball();
-    let line = "render ball.json --size 16x9 --steps 0,1,2";
+    let line = "render ball.json --size 16x9 --fov 60 --look 0,1,0 --steps 0,1,2";
     workplace.run(line).success();
     let pictures = ["0", "1", "2"].map(|k| format!("ball_observer_step00{k}.png"));
     for picture in &pictures {
         assert_eq!(png_size(&workplace.read(picture)), (16, 9));
     }
     assert_ne!(workplace.read(&pictures[0]), workplace.read(&pictures[2]));
-    let run = workplace.run("render ball.json --size 16x9 -o -").success();
+    let run = workplace
+        .run("render ball.json --size 16x9 --fov 60 --look 0,1,0 -o -")
+        .success();
     assert_eq!(run.stdout, workplace.read(&pictures[0]));
     workplace
         .run(&format!("{line} -o -"))
@@ -55,7 +57,7 @@ fn a_picture_for_each_step_or_one_for_stdout() {
 fn every_flag_of_a_picture_changes_it() {
     let workplace = Workplace::with_ball();
     let picture = |flags: &str| {
-        let line = format!("render ball.json --size 32x18 {flags} -o -");
+        let line = format!("render ball.json --size 32x16 {flags} -o -");
         workplace.run(&line).success().stdout
     };
     let plain = picture("");
@@ -181,7 +183,7 @@ fn pictures_that_make_no_sense_are_refused_before_any_work() {
         ("--wireframe", vec!["--wireframe", "--method mesh"]),
         ("--sheet --view outside", vec!["cannot be used with"]),
         (
-            "--sheet --steps 0..1/99 --size 400x9",
+            "--sheet --columns 99 --steps 0..1/99 --size 400x9",
             vec!["--sheet", "16384"],
         ),
         ("--size 0x9", vec!["0 x 9", "16384"]),
@@ -264,7 +266,7 @@ fn painted(png: &[u8]) -> usize {
         .count()
 }
 
-/// What comes at a fast observer is seen small: a mesh of which nothing else is said fills the picture all the same.
+/// A mesh of which nothing else is said is passed: it fills the picture, and at each speed it looks turned by another angle.
 #[test]
 fn a_bare_mesh_fills_the_picture() {
     let workplace = Workplace::new();
@@ -274,17 +276,31 @@ fn a_bare_mesh_fills_the_picture() {
     );
     let picture = |flags: &str| {
         let line = format!("render square.obj --size 64x48 {flags} -o -");
-        painted(&workplace.run(&line).success().stdout)
+        painted(&workplace.run(&line).success().stdout) as f64 / (64.0 * 48.0)
     };
-    for speed in ["--beta 0", "--beta 0.9", "--beta 0.9999", "--gamma 1e6"] {
-        // The picture is as high as the circle around the square: more than a third of it, less than all.
-        let part = picture(speed) as f64 / (64.0 * 48.0);
-        assert!((0.3..0.6).contains(&part), "{speed}: {part}");
-        for flags in ["--fov 60", "--look 0,0,-1", "--target 0,0,-1"] {
-            let as_said = picture(&format!("{speed} {flags}")) as f64 / (64.0 * 48.0);
-            assert!(as_said < part, "{speed} {flags}: {as_said}");
-        }
+    // As high as the picture but for the margin; as wide as a square turned by asin(beta), without the shear of what is near.
+    let mut before = 1.0;
+    for beta in [0.0, 0.6, 0.9, 0.99] {
+        let part = picture(&format!("--beta {beta}"));
+        let turned = 0.75 / 1.08 / 1.08 * f64::sqrt(1.0 - beta * beta);
+        assert!(
+            part > 0.8 * turned && part < 1.6 * turned + 0.05,
+            "{beta}: {part} {turned}"
+        );
+        assert!(part < before, "{beta}: {part} {before}");
+        before = part;
     }
+    // The same from any direction: nothing of the square is before the camera that looks away from it.
+    let run = workplace
+        .run("render square.obj --beta 0.9 --look 0,0,1 --size 64x48 -o away.png")
+        .success();
+    assert!(run.stderr.contains("nothing is to be seen"), "{run}");
+    // Several speeds have one field of view, and series of a passage hold their direction.
+    let run = workplace
+        .run("render square.obj --beta 0.5,0.9 --steps=pass:3 --size 64x48 -o pass.png")
+        .success();
+    assert!(run.stderr.contains("pass_step002.png"), "{run}");
+    assert_eq!(png_size(&workplace.read("pass_step001.png")), (64, 100));
 }
 
 #[test]
@@ -301,7 +317,7 @@ fn an_empty_picture_is_noted() {
     let (_, advice) = run.stderr.split_once("--look=").expect("advice");
     let look = advice.split(' ').next().expect("a direction");
     let run = workplace
-        .run(&format!("{line} --look={look} --fov 90"))
+        .run(&format!("{line} --look={look} --fov 40"))
         .success();
     assert!(!run.stderr.contains("note"), "{run}");
     let run = workplace

@@ -6,7 +6,7 @@ use glam::DVec2;
 use photosurface::effects::{
     Daylight, Doppler, Reflectance, Spectrum, luminance, ramp_color, tone, within_gamut,
 };
-use photosurface::jobs::{Aim, CameraSettings, FieldOfView, RenderError};
+use photosurface::jobs::{Aim, CameraSettings, PictureProjection, RenderError};
 use photosurface::material::Material;
 use photosurface::render::{
     Camera, Picture, PictureEffects, PictureOptions, PictureSize, Projection, Scenery, Viewpoint,
@@ -76,9 +76,9 @@ fn around_unlit(grey: f64, effects: &Value) -> PlacedScene {
 fn sky(placed: &PlacedScene, method: PictureMethod, [width, height]: [u32; 2]) -> Picture {
     let mut settings = PictureSettings::new(PictureView::Observer(method));
     settings.camera = CameraSettings {
-        size: PictureSize::new(width, height).expect("pixels"),
-        field_of_view: FieldOfView::FullSky,
+        projection: PictureProjection::FullSky,
         aim: Aim::Look(DVec3::NEG_Z),
+        ..CameraSettings::new(PictureSize::new(width, height).expect("pixels"))
     };
     settings.samples = 1.try_into().expect("a ray a pixel");
     let mut picture = None;

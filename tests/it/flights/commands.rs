@@ -114,7 +114,7 @@ fn every_picture_follows_the_flight() {
         let name = format!("picture{before}.png");
         workplace
             .run(&format!(
-                "render flying.json --size 96x64 -o {name} {flags}"
+                "render flying.json --size 96x48 -o {name} {flags}"
             ))
             .success();
         assert_eq!(workplace.files().len() - before, files, "{flags}");

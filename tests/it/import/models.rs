@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::common::Random;
 use photosurface::material::{AlphaMode, Wrap};
-use photosurface::read::{ReadError, read_gltf_bytes, read_model};
+use photosurface::read::{ReadError, read_gltf_bytes, read_model, read_model_bytes};
 use photosurface::{DVec3, Model, Part, Vec2, Vec4};
 use serde_json::json;
 
@@ -415,11 +415,34 @@ fn the_kind_of_file_is_told_by_name_or_content() {
         read_model(&upper).expect("an OBJ file").0.parts[0].name,
         "MODEL"
     );
-    let other = folder.path().join("model.stl");
+    for (name, text) in [
+        (
+            "ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+          element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+        ),
+        (
+            "stl",
+            "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n",
+        ),
+        ("off", "OFF\n3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+    ] {
+        for file in [format!("model.{name}"), format!("{name} without extension")] {
+            let path = folder.path().join(file);
+            std::fs::write(&path, text).expect("a file");
+            let (model, findings) = read_model(&path).expect(name);
+            assert_eq!(model.triangle_count(), 1, "{name}");
+            assert_eq!(findings.files, [path]);
+        }
+        let (model, _) = read_model_bytes(text.as_bytes(), Path::new("")).expect(name);
+        assert_eq!(model.triangle_count(), 1, "{name}");
+    }
+    let other = folder.path().join("model.fbx");
     std::fs::copy(fixture("quad.obj"), &other).expect("a copy");
     assert_eq!(
         read_model(&other).expect_err("unknown").to_string(),
-        "unknown kind of file \"stl\", expected .glb, .gltf or .obj"
+        "unknown kind of file \"fbx\", expected .glb, .gltf, .obj, .ply, .stl or .off; Blender or MeshLab convert other \
+         formats"
     );
 }
 

@@ -1,6 +1,8 @@
 //! Pictures that the library draws with one call: the bytes are those of the command, and whoever calls may stop the work.
 
-use photosurface::jobs::{Aim, FieldOfView, FramingError, RenderError, Rendered};
+use photosurface::jobs::{
+    Aim, FieldOfView, FramingError, PictureProjection, RenderError, Rendered,
+};
 use photosurface::render::{Picture, PictureSize};
 use photosurface::spacetime::ViewModel;
 use photosurface::{
@@ -14,7 +16,7 @@ use crate::common::progress::Pieces;
 const STEPS: [f64; 2] = [0.0, 3.0];
 
 /// Flags that are in every command here.
-const FLAGS: &str = "render ball.json --steps 0,3 --size 40x30";
+const FLAGS: &str = "render ball.json --steps 0,3";
 
 const OUTSIDE: PictureView = PictureView::Outside {
     from: None,
@@ -83,7 +85,7 @@ fn one_call_writes_the_files_of_the_command() {
     let workplace = Workplace::with_ball();
     for (view, flags, _) in VIEWS {
         workplace
-            .run(&format!("{FLAGS} {flags} -o command.png"))
+            .run(&format!("{FLAGS} --size 40x30 {flags} -o command.png"))
             .success();
         let (settings, textures) = (settings(view), Textures::default());
         let path = workplace.path("library.png");
@@ -116,15 +118,17 @@ fn settings_mean_what_flags_of_the_command_do() {
     observer.camera.aim = Aim::Look(DVec3::new(0.0, 1.0, 0.1));
     observer.camera.field_of_view = FieldOfView::Degrees(90.0);
     let mut sky = settings(PictureView::Observer(PictureMethod::Mesh));
-    sky.camera.field_of_view = FieldOfView::FullSky;
+    sky.camera.projection = PictureProjection::FullSky;
+    sky.guides.sky_grid = true;
+    sky.camera.size = PictureSize::new(40, 20).unwrap();
     sky.samples = std::num::NonZeroU32::MIN;
     for (settings, flags) in [
         (
             outside,
-            "--view outside --ghost rest,contracted --axes --scale-bar --wireframe --target 0,1,0",
+            "--view outside --ghost rest,contracted --axes --scale-bar --wireframe --target 0,1,0 --size 40x30",
         ),
-        (observer, "--look 0,1,0.1 --fov 90"),
-        (sky, "--full-sky --method mesh --samples 1"),
+        (observer, "--look 0,1,0.1 --fov 90 --size 40x30"),
+        (sky, "--full-sky --method mesh --samples 1 --size 40x20"),
     ] {
         workplace
             .run(&format!("{FLAGS} {flags} -o a.png"))

@@ -145,11 +145,15 @@ impl Case {
     /// The flags of `photosurface render` that do the same.
     pub fn render_flags(&self) -> String {
         let Picture {
-            size: [width, height],
+            size: [mut width, height],
             samples,
             look: [x, y, z],
             ..
         } = self.picture;
+        if self.picture.fov.is_none() {
+            // The command has the whole sky in this shape alone.
+            width = 2 * height;
+        }
         let mut flags =
             format!("--size {width}x{height} --samples {samples} --look={x:?},{y:?},{z:?}");
         flags += &match self.picture.fov {

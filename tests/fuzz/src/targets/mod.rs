@@ -16,7 +16,7 @@ use tempfile::TempDir;
 
 pub use case::Case;
 pub use export::export;
-pub use reading::{gltf, obj, scene};
+pub use reading::{gltf, obj, scan, scene};
 pub use render::render;
 
 /// Most memory that one input may take: a program that needs more for a kilobyte is wrong.
@@ -26,9 +26,10 @@ pub const MEMORY: usize = 1 << 29;
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets.
-pub const TARGETS: [Target; 5] = [
+pub const TARGETS: [Target; 6] = [
     ("gltf", gltf),
     ("obj", obj),
+    ("scan", scan),
     ("scene", scene),
     ("export", export),
     ("render", render),

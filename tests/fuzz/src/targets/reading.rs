@@ -27,6 +27,21 @@ pub fn obj(bytes: &[u8]) {
     });
 }
 
+/// Reads a PLY or an OFF file if the bytes begin with the name of one, else an STL file.
+pub fn scan(bytes: &[u8]) {
+    let start = &bytes[..bytes.len().min(8)];
+    let name = match start {
+        [b'p', b'l', b'y', ..] => "a.ply",
+        _ if start.windows(3).any(|word| word == b"OFF") => "a.off",
+        _ => "a.stl",
+    };
+    in_folder(|folder| {
+        let mesh = folder.join(name);
+        write(&mesh, bytes);
+        check(read_model(&mesh));
+    });
+}
+
 /// Reads a scene.
 pub fn scene(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {

@@ -9,9 +9,28 @@ use std::collections::{BTreeSet, HashMap};
 
 use glam::{DVec2, DVec3};
 
+/// The triangles of polygons: `corners` numbers the corners of all of them, one polygon after the other, and `arities` says
+/// how many corners each has.
+pub(super) fn triangles(arities: &[u32], corners: &[u32], positions: &[DVec3]) -> Vec<[u32; 3]> {
+    let mut rest = corners;
+    let mut triangles = vec![];
+    for &arity in arities {
+        let (face, others) = rest.split_at(arity as usize);
+        rest = others;
+        if let &[a, b, c] = face {
+            triangles.push([a, b, c]);
+            continue;
+        }
+        let places: Vec<DVec3> = face.iter().map(|&i| positions[i as usize]).collect();
+        let of_face = triangulate(&places);
+        triangles.extend(of_face.into_iter().map(|corners| corners.map(|i| face[i])));
+    }
+    triangles
+}
+
 /// The `n - 2` triangles of a polygon with the given corners, wound as it is; each is three numbers of
 /// corners. Corners that are not in a plane, or whose edges cross, give triangles all the same.
-pub(super) fn triangulate(corners: &[DVec3]) -> Vec<[usize; 3]> {
+fn triangulate(corners: &[DVec3]) -> Vec<[usize; 3]> {
     let flat = flattened(corners);
     let count = corners.len();
     let turn = |i: usize| area(flat[i], flat[(i + 1) % count], flat[(i + 2) % count]);

@@ -1,0 +1,3 @@
+#![no_main]
+
+photosurface_fuzz::fuzz!(scan);
