@@ -115,6 +115,16 @@ impl ObserverArgs {
         self.observer.is_some()
     }
 
+    /// Whether steps are given that are the frames of a film, one by one; the moments of a passage are so only if they
+    /// have a count.
+    pub(super) fn has_frames(&self) -> bool {
+        match &self.steps {
+            None => false,
+            Some(Steps::Times(_)) => true,
+            Some(Steps::Pass(count)) => *count != PASSAGE,
+        }
+    }
+
     /// Whether place and steps of the observer are left to the program, which makes an observer of a mesh fly by.
     pub(super) fn flies_by(&self) -> bool {
         self.observer.is_none() && self.steps.is_none()

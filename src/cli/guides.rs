@@ -1,6 +1,7 @@
 //! Flags for what helps to read a picture, and what its colours mean.
 
-use photosurface::jobs::Guides;
+use anyhow::ensure;
+use photosurface::jobs::{Caption, Guides};
 use photosurface::spacetime::ViewModel;
 
 #[derive(Debug, clap::Args)]
@@ -27,18 +28,57 @@ pub(super) struct GuideArgs {
     /// Draw a bar of a round length in scene units in views from outside, as it is in the middle of what is shown
     #[arg(long, conflicts_with = "full_sky")]
     scale_bar: bool,
+    /// Write the name of each object beside it
+    #[arg(long)]
+    labels: bool,
+    /// What is written on a picture, or above a sheet: "title" of the scene, "speed" and "gamma" of the objects relative to
+    /// the observer, its proper "time", the "model" under which objects are shown; or "none". The names of ghosts' models stand
+    /// below [default: title,speed,gamma,time on sheets and films, none on other pictures]
+    #[arg(long, value_name = "PART,...", value_enum, value_delimiter = ',')]
+    caption: Vec<Part>,
+}
+
+/// A part of a caption.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Part {
+    Title,
+    Speed,
+    Gamma,
+    Time,
+    Model,
+    None,
 }
 
 impl GuideArgs {
-    /// The guides of pictures, of the whole sky or of less.
-    pub(super) fn guides(&self, of_full_sky: bool) -> Guides {
-        Guides {
+    /// The guides of pictures, of the whole sky or of less; `tells_time` is whether the pictures show several moments together.
+    pub(super) fn guides(&self, of_full_sky: bool, tells_time: bool) -> anyhow::Result<Guides> {
+        Ok(Guides {
             ghosts: self.ghost.clone(),
             axes: self.axes,
             scale_bar: self.scale_bar,
             sky_grid: self.grid || of_full_sky && !self.no_grid,
             wireframe: self.wireframe,
-        }
+            labels: self.labels,
+            caption: self.caption(tells_time)?,
+        })
+    }
+
+    fn caption(&self, tells_time: bool) -> anyhow::Result<Caption> {
+        let has = |part| self.caption.contains(&part);
+        ensure!(
+            !has(Part::None) || self.caption.len() == 1,
+            "--caption: none stands alone, expected no other part beside it"
+        );
+        Ok(match self.caption.as_slice() {
+            [] if tells_time => Caption::STANDARD,
+            _ => Caption {
+                title: has(Part::Title),
+                speed: has(Part::Speed),
+                gamma: has(Part::Gamma),
+                time: has(Part::Time),
+                model: has(Part::Model),
+            },
+        })
     }
 
     /// Whether something is asked for that only pictures from outside have.

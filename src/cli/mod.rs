@@ -13,6 +13,7 @@ mod effects;
 mod example;
 mod export;
 mod file_camera;
+mod film;
 mod flight;
 mod flight_tables;
 mod guides;

@@ -18,6 +18,7 @@ use super::accuracy::AccuracyArgs;
 use super::args::{InputArgs, ObserverArgs, PASSAGE};
 use super::camera::{CameraArgs, Method, View};
 use super::effects::{EffectArgs, tell_of_ramp};
+use super::film::{Film, FilmArgs};
 use super::guides::GuideArgs;
 use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, counted, print};
@@ -31,6 +32,7 @@ Examples:
   photosurface render
   photosurface render --sheet --example cube -o cube.png
   photosurface render --example street --look 0,0,-1 -o street.png
+  photosurface render --example cube --film cube.gif
   photosurface render --example cube --view outside --ghost rest,contracted --axes -o outside.png";
 
 /// Make pictures of what the observer sees, or of photosurfaces from outside
@@ -55,6 +57,8 @@ pub(super) struct RenderArgs {
     effects: EffectArgs,
     #[command(flatten)]
     accuracy: AccuracyArgs,
+    #[command(flatten)]
+    film: FilmArgs,
     /// Where to write a .png; each step gets its own file: out_step000.png, out_step001.png, ..., and those that
     /// are finished stay when it is interrupted; - for stdout [default: NAME_VIEW.png or NAME_sheet.png in this directory]
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
@@ -76,8 +80,11 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     );
     camera.refuse_unused(method, &args.accuracy.given())?;
     check_output(args.output.as_deref())?;
+    let film = args.film.film()?;
     let input = Input::read_for_speeds(&args.input, &args.observer, verbosity)?;
     let mut settings = camera.settings(method)?;
+    let tells_time = camera.sheet || film.is_some();
+    settings.guides = guides.guides(camera.shows_full_sky(), tells_time)?;
     let kind = match settings.view {
         PictureView::Sheet { .. } => "sheet",
         PictureView::Observer(_) => "observer",
@@ -87,25 +94,27 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}_{kind}.png", input.name)),
     };
-    let scenes = scenes(args, &input)?;
+    let scenes = scenes(args, &input, film.as_ref())?;
     let steps = scenes[0].1.steps().len();
     let models = args.models.side_by_side()?;
     let columns = models.len().max(1);
     let size = settings.side_by_side_size(scenes.len(), columns, steps);
-    size.context(match (scenes.len(), columns) {
+    let size = size.context(match (scenes.len(), columns) {
         (1, 1) => "--sheet: all steps on one picture; choose fewer --steps or a smaller --size",
         _ => "all speeds and models on one picture; choose fewer of them, or a smaller --size",
     })?;
     ensure!(
-        settings.picture_count(steps) == 1 || !is_stdout(&path),
+        film.is_some() || settings.picture_count(steps) == 1 || !is_stdout(&path),
         "{steps} steps are as many pictures, they cannot all go to stdout; choose one with --steps"
     );
-    let files = settings.files(&path, steps);
+    let files = match &film {
+        Some(film) => vec![film.path.to_owned()],
+        None => settings.files(&path, steps),
+    };
     check_destinations(files.iter().cloned(), &input.files)?;
     let scene = &scenes[0].1;
     tell_of_ramp(scene, verbosity);
     settings.background = camera.background(scene, settings.background);
-    settings.guides = guides.guides(camera.shows_full_sky());
     settings.surface_options = args.accuracy.wanted(Precision::Double);
     let fits_budget = camera.shows_meshes(method) && settings.surface_options.subdivide;
     let fitted = |placed| match fits_budget {
@@ -119,9 +128,11 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     };
     let progress = Bar::new(0, "rows", verbosity);
     let textures = &input.textures;
-    let finished = |number: usize, picture: &Picture| write(&files[number], picture);
     let placed = |scene: &Scene| PlacedScene::new(scene.clone(), input.models.clone());
-    let rendered = match (scenes.as_slice(), models) {
+    let draw = |finished: &mut dyn FnMut(usize, &Picture) -> anyhow::Result<()>| match (
+        scenes.as_slice(),
+        models,
+    ) {
         ([(_, scene)], []) => {
             let placed = fitted(placed(scene)?);
             photosurface::render(&placed, textures, &settings, &progress, finished)
@@ -134,6 +145,10 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
             render_side_by_side(&rows, textures, &settings, &progress, finished)
         }
     };
+    let rendered = match &film {
+        Some(film) => film.record(size, steps, draw),
+        None => draw(&mut |number, picture| write(&files[number], picture)),
+    };
     let rendered = rendered.map_err(|error| match error.downcast::<RenderError>() {
         Ok(error) => camera.flagged(error),
         Err(error) => error,
@@ -145,10 +160,13 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     tell_of_empty(&rendered.empty, views, camera, method, verbosity);
     tell_of_missing(&input.textures, &scenes[0].1, verbosity);
     if !is_stdout(&files[0]) {
+        let pictures = match &film {
+            Some(_) => counted(steps, "frame"),
+            None => counted(files.len(), "picture"),
+        };
         verbosity.result(format_args!(
-            "{}: {}{}",
+            "{}: {pictures}{}",
             from_first_to_last(&files),
-            counted(files.len(), "picture"),
             legend(args)
         ));
     }
@@ -159,7 +177,11 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
 }
 
 /// The scene with everything that the flags say, for each speed with its label.
-fn scenes(args: &RenderArgs, input: &Input) -> anyhow::Result<Vec<(String, Scene)>> {
+fn scenes(
+    args: &RenderArgs,
+    input: &Input,
+    film: Option<&Film<'_>>,
+) -> anyhow::Result<Vec<(String, Scene)>> {
     let observer = input.scene.observer();
     let mut scenes = vec![];
     for (label, velocity) in args.observer.speeds(observer)? {
@@ -173,7 +195,8 @@ fn scenes(args: &RenderArgs, input: &Input) -> anyhow::Result<Vec<(String, Scene
     if scenes.is_empty() {
         scenes.push((String::new(), input.scene.clone()));
     }
-    let passes = input.is_mesh && args.camera.sheet && args.observer.flies_by();
+    let shows_time = args.camera.sheet || film.is_some();
+    let passes = input.is_mesh && shows_time && args.observer.flies_by();
     for (_, scene) in &mut scenes {
         let mut changed = args.accuracy.scene(scene.clone());
         if passes {
@@ -184,6 +207,9 @@ fn scenes(args: &RenderArgs, input: &Input) -> anyhow::Result<Vec<(String, Scene
                 Err(error) => return Err(error.into()),
             };
             changed = changed.with_steps(steps)?;
+        }
+        if let Some(film) = film {
+            changed = film.scene(changed, args.observer.has_frames())?;
         }
         *scene = args.effects.scene(args.models.scene(changed));
     }

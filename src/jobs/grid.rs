@@ -23,21 +23,34 @@ pub(super) fn grid_size(
 pub(super) struct Grid {
     pub(super) picture: Picture,
     size: PictureSize,
+    /// Height of the strip above all views, in pixels.
+    top: u32,
 }
 
 impl Grid {
-    /// A picture of `size` pixels in which nothing stands yet, for views of the size `of_view` with this background.
-    pub(super) fn new(size: PictureSize, of_view: PictureSize, background: Color) -> Self {
+    /// A picture of `size` pixels in which nothing stands yet, for views of the size `of_view` with this background, below a
+    /// strip of `top` pixels.
+    pub(super) fn new(
+        size: PictureSize,
+        of_view: PictureSize,
+        top: u32,
+        background: Color,
+    ) -> Self {
+        let mut picture = Picture::filled(size, between(background));
+        if let Ok(strip) = PictureSize::new(size.width(), top) {
+            picture.paste(&Picture::filled(strip, background), 0, 0);
+        }
         Self {
-            picture: Picture::filled(size, between(background)),
+            picture,
             size: of_view,
+            top,
         }
     }
 
     /// Places a view.
     pub(super) fn place(&mut self, view: &Picture, column: usize, row: usize) {
         let x = column as u32 * (self.size.width() + GAP);
-        let y = row as u32 * (self.size.height() + GAP);
+        let y = self.top + row as u32 * (self.size.height() + GAP);
         self.picture.paste(view, x, y);
     }
 }

@@ -3,7 +3,9 @@
 use std::num::NonZeroUsize;
 use std::ops::Range;
 
+use super::caption::strip_height;
 use super::grid::grid_size;
+use super::guides::Guides;
 use super::picture_settings::{PictureSettings, PictureView};
 use crate::render::{CameraError, PictureSize};
 
@@ -66,6 +68,20 @@ impl PictureSettings {
             columns,
             page.len() * self.views_of_a_cell(),
         )
+    }
+
+    /// The height of the strip above a sheet in which the caption of all of it stands, in pixels.
+    pub(super) fn strip_height(&self) -> u32 {
+        let Guides {
+            caption, ghosts, ..
+        } = &self.guides;
+        let has_ghosts = !caption.is_none() && !ghosts.is_empty();
+        match self.view {
+            PictureView::Sheet { .. } if caption.is_of_a_sheet() || has_ghosts => {
+                strip_height(self.camera.size.height())
+            }
+            _ => 0,
+        }
     }
 
     /// How many views stand above each other for a scene at a step.

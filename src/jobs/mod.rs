@@ -2,8 +2,10 @@
 
 mod ahead;
 mod budget;
+mod caption;
 mod check;
 mod clock;
+mod contrast;
 #[cfg(feature = "plot")]
 mod diagram;
 #[cfg(feature = "plot")]
@@ -16,9 +18,11 @@ mod extent;
 mod file_camera;
 mod files;
 mod framing;
+mod ghosts;
 mod grid;
 mod guides;
 mod input;
+mod labels;
 mod layout;
 mod legend;
 mod load;
@@ -39,6 +43,7 @@ mod work;
 #[cfg(feature = "plot")]
 pub use crate::plot::{PlotError, PlotSize};
 pub use budget::{DEFAULT_MAX_TRIANGLES, Fitted};
+pub use caption::Caption;
 pub use check::{Check, CheckedEffect, CheckedLevel, CheckedObject, CheckedStep, CheckedTriangles};
 #[cfg(feature = "plot")]
 pub use diagram::{

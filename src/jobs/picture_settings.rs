@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
+use super::caption::Caption;
 use super::files::file_for_each_step;
 use super::framing::CameraSettings;
 use super::guides::Guides;
@@ -69,7 +70,7 @@ pub struct PictureSettings {
 
 impl PictureSettings {
     /// The default settings of the command `photosurface render`: 1280 by 720 pixels, or 320 by 240 for each view of a
-    /// sheet, and nine rays per pixel. The cameras have everything in the picture.
+    /// sheet, and nine rays per pixel. The cameras have everything in the picture. A sheet has a caption.
     pub fn new(view: PictureView) -> Self {
         let [width, height] = match view {
             PictureView::Sheet { .. } => [320, 240],
@@ -83,7 +84,13 @@ impl PictureSettings {
             columns: None,
             samples: NonZeroU32::new(options.samples).unwrap_or(NonZeroU32::MIN),
             background: options.background,
-            guides: Guides::default(),
+            guides: Guides {
+                caption: match view {
+                    PictureView::Sheet { .. } => Caption::STANDARD,
+                    _ => Caption::default(),
+                },
+                ..Guides::default()
+            },
             surface_options: SurfaceOptions {
                 precision: Precision::Double,
                 ..SurfaceOptions::default()

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use super::caption::{Block, Words, draw_strip};
 use super::exposure::expose;
 use super::files::check_outputs;
 use super::grid::Grid;
-use super::guides::label;
 use super::layout::{Cell, Page, Shape};
 use super::observer_frame::{ObserverFrame, heading};
 use super::outside_camera::{Contents, OutsideCamera};
@@ -215,14 +215,18 @@ impl<'a> Table<'a> {
         let settings = self.settings;
         let size = settings.page_size(page);
         let size = size.map_err(|source| RenderError::Sheet { steps, source })?;
-        let mut grid = Grid::new(size, settings.camera.size, settings.background);
+        let top = settings.strip_height();
+        let mut grid = Grid::new(size, settings.camera.size, top, settings.background);
+        if top > 0 {
+            draw_strip(&mut grid.picture, &self.strip(), top, settings.background);
+        }
         let last = page.iter().map(Vec::len).sum::<usize>();
         let mut number = 0;
         for (row, cells) in page.iter().enumerate() {
             for (column, cell) in cells.iter().enumerate() {
                 let outside = self.outside.get(before + number).copied();
                 number += 1;
-                let mut pictures = self.cell(cell, outside)?;
+                let mut pictures = self.cell(cell, outside, number == 1)?;
                 if let Some(picture) = pictures.last_mut().filter(|_| number == last) {
                     self.views[cell.scene].draw_legend(picture);
                 }
@@ -234,13 +238,18 @@ impl<'a> Table<'a> {
         Ok(grid.picture)
     }
 
-    /// The views of one cell, from above.
+    /// The views of one cell, from above; `is_first` is whether it is the first of its picture.
     fn cell(
         &mut self,
         cell: &Cell,
         outside: Option<OutsideCamera>,
+        is_first: bool,
     ) -> Result<Vec<Picture>, RenderError> {
+        let size = self.settings.camera.size;
+        let words = self.words(cell, is_first);
+        let caption = Block::in_corner(&words, size.width().into(), size.height().into());
         let views = &mut self.views[cell.scene];
+        views.taken_corner = caption.size;
         let mut pictures = vec![];
         if !matches!(self.settings.view, PictureView::Outside { .. }) {
             pictures.push(views.observer(cell.steps.start)?);
@@ -248,25 +257,64 @@ impl<'a> Table<'a> {
         if let Some(camera) = outside {
             pictures.push(views.outside(cell.steps.clone(), &camera)?);
         }
-        if let (Some(first), Some(text)) = (pictures.first_mut(), self.label_of(cell)) {
-            label(first, &text, self.settings.background);
+        if let Some(first) = pictures.first_mut() {
+            caption.draw(first, self.settings.background);
         }
         Ok(pictures)
     }
 
-    /// The words on a cell: which scene, and on a sheet of several steps the proper time.
-    fn label_of(&self, cell: &Cell) -> Option<String> {
+    /// The words above a sheet: what is the same in all of it.
+    fn strip(&self) -> Vec<Words> {
+        let caption = self.settings.guides.caption;
+        let title = caption.title(self.views[0].placed).unwrap_or_default();
+        let mut words = vec![Words::new(title)];
+        words.extend(
+            self.common_numbers()
+                .unwrap_or_default()
+                .into_iter()
+                .map(Words::new),
+        );
+        words.extend(Words::of_ghosts(&self.settings.guides.ghosts));
+        words
+    }
+
+    /// The numbers of a sheet's caption, if they are the same in all its cells.
+    fn common_numbers(&self) -> Option<Vec<String>> {
+        let caption = self.settings.guides.caption;
+        let mut all = self.views.iter().flat_map(|views| {
+            let steps = views.steps();
+            steps.map(|step| caption.numbers(views.placed, step..step + 1))
+        });
+        let first = all.next()?;
+        all.all(|other| other == first).then_some(first)
+    }
+
+    /// The words on a cell, line by line: title, which scene, numbers, names of ghosts. On a sheet only what differs from cell
+    /// to cell.
+    fn words(&self, cell: &Cell, is_first: bool) -> Vec<Vec<Words>> {
         let is_sheet = matches!(self.settings.view, PictureView::Sheet { .. });
-        let label = self.labels[cell.scene];
-        let proper_time = self.views[cell.scene].placed.scene().steps()[cell.steps.start];
-        match (label, is_sheet) {
-            ("", false) => None,
-            ("", true) => Some(proper_time_label(proper_time)),
-            (label, true) if self.steps > 1 => {
-                Some(format!("{label}, {}", proper_time_label(proper_time)))
-            }
-            (label, _) => Some(label.to_owned()),
-        }
+        let (guides, placed) = (&self.settings.guides, self.views[cell.scene].placed);
+        let caption = guides.caption;
+        let label = Some(self.labels[cell.scene].to_owned()).filter(|label| !label.is_empty());
+        let numbers = match is_sheet && self.common_numbers().is_some() {
+            true => vec![],
+            // The label says the speed, or the model.
+            false if label.is_some() && is_sheet => vec![],
+            false => caption.numbers(placed, cell.steps.clone()),
+        };
+        let time = caption.time(placed, cell.steps.clone());
+        let numbers = label.into_iter().chain(numbers).chain(time);
+        let is_shown = is_first && !is_sheet;
+        let title = caption.title(placed).filter(|_| is_shown).map(Words::new);
+        let ghosts = match is_shown && !caption.is_none() {
+            true => Words::of_ghosts(&guides.ghosts),
+            false => vec![],
+        };
+        vec![
+            title.into_iter().collect(),
+            numbers.map(Words::new).collect(),
+            ghosts,
+        ]
     }
 }
 
@@ -297,19 +345,6 @@ fn frame_observer(all: &mut [Views]) -> Result<(), RenderError> {
         views.rendered.frame = Some(frame.facts());
     }
     Ok(())
-}
-
-/// The label of a step at a proper time of the observer.
-fn proper_time_label(proper_time: f64) -> String {
-    format!("τ = {}", short(proper_time))
-}
-
-/// A number in at most six digits, if it has more.
-fn short(number: f64) -> f64 {
-    match number.to_string().len() {
-        ..=8 => number,
-        _ => format!("{number:.5e}").parse().unwrap_or(number),
-    }
 }
 
 /// Draws pictures as [`render()`] does, and writes each as PNG to its file of [`PictureSettings::files`] as soon as it

@@ -4,7 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DVec2, DVec3};
 
-use super::guides::{contrasting, letters};
+use super::contrast::ink;
+use super::guides::letters;
 use crate::render::{Camera, Picture, Scenery, Strokes, Viewpoint, lettering_width};
 use crate::shape::Color;
 
@@ -60,7 +61,7 @@ pub(super) fn draw_heading(
     heading: DVec3,
     background: Color,
 ) {
-    let color = contrasting(background);
+    let color = ink(background);
     let size = 0.6 * letters(picture);
     let cross = [[DVec2::NEG_X, DVec2::X], [DVec2::NEG_Y, DVec2::Y]];
     let corner = |part: u32| DVec2::from_angle(f64::from(part) * TAU / 24.0);
@@ -96,7 +97,7 @@ pub(super) fn draw_heading(
 
 /// A colour for lines that are not to be in the way: a third of the way from the background to what stands out from it.
 fn faint(background: Color) -> Color {
-    let strong = contrasting(background).0;
+    let strong = ink(background).0;
     let mut mixed = background.0;
     for (level, strong) in mixed.iter_mut().zip(strong) {
         *level = ((2 * u16::from(*level) + u16::from(strong)) / 3) as u8;

@@ -4,10 +4,11 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::extent::{middle_of_sky, outermost};
-use super::guides::Ghost;
+use super::ghosts::{Ghost, ghosts};
+use super::labels::draw_labels;
 use super::legend::draw_ramp_legend;
 use super::observer_frame::ObserverFrame;
 use super::outside_camera::OutsideCamera;
@@ -49,6 +50,8 @@ pub(super) struct Views<'a> {
     /// The first step whose photosurfaces have not been counted yet.
     next_step: usize,
     pub(super) rendered: Rendered,
+    /// Size of the upper left corner that a caption takes on the next view, in pixels.
+    pub(super) taken_corner: DVec2,
 }
 
 impl<'a> Views<'a> {
@@ -80,6 +83,7 @@ impl<'a> Views<'a> {
             frame: None,
             next_step: 0,
             rendered: Rendered::default(),
+            taken_corner: DVec2::ZERO,
         }
     }
 
@@ -162,7 +166,7 @@ impl<'a> Views<'a> {
                 scenery
             }
         };
-        let edges = set_ghosts(&mut scenery, ghosts);
+        let edges = self.set_ghosts(&mut scenery, ghosts, &camera, DVec3::ZERO);
         let (mut picture, cost) = self.take(&scenery, &camera, viewpoint)?;
         scenery.draw(&mut picture, &camera, viewpoint, &edges);
         let background = self.settings.background;
@@ -180,6 +184,7 @@ impl<'a> Views<'a> {
             let look = middle_of_sky(&places);
             self.rendered.empty.push(EmptyView { step, look });
         }
+        self.draw_labels(&mut picture, &camera, DVec3::ZERO, step);
         Ok(picture)
     }
 
@@ -197,11 +202,12 @@ impl<'a> Views<'a> {
             scenery.add_in_view(marker);
         }
         let mut ghosts = Vec::new();
+        let first = steps.start;
         for step in steps {
             self.add_photosurfaces(&mut scenery, step)?;
             ghosts.extend(self.ghosts(step)?);
         }
-        let edges = set_ghosts(&mut scenery, ghosts);
+        let edges = self.set_ghosts(&mut scenery, ghosts, &outside.camera, outside.place);
         let viewpoint = Viewpoint::Outside(outside.place);
         let (mut picture, cost) = self.take(&scenery, &outside.camera, viewpoint)?;
         self.rendered.costs.push(cost);
@@ -209,13 +215,49 @@ impl<'a> Views<'a> {
         settings
             .guides
             .draw(&mut picture, outside, &scenery, &edges, background);
+        self.draw_labels(&mut picture, &outside.camera, outside.place, first);
         Ok(picture)
+    }
+
+    /// Writes the names of objects beside them, if that is asked for; the caption is on the first of a cell's views.
+    fn draw_labels(&mut self, picture: &mut Picture, camera: &Camera, eye: DVec3, step: usize) {
+        let corner = std::mem::take(&mut self.taken_corner);
+        if self.settings.guides.labels {
+            let (place, background) = ((self.placed, step), self.settings.background);
+            draw_labels(picture, camera, eye, place, corner, background);
+        }
+    }
+
+    /// Has a scenery show ghosts; returns their lines, which are drawn onto the picture.
+    fn set_ghosts(
+        &self,
+        scenery: &mut Scenery,
+        ghosts: Vec<Ghost>,
+        camera: &Camera,
+        eye: DVec3,
+    ) -> Vec<Strokes<DVec3>> {
+        let background = self.settings.background;
+        let strokes = ghosts
+            .iter()
+            .map(|ghost| ghost.strokes(camera, eye, background));
+        let strokes = strokes.collect();
+        let colored = |ghost: Ghost| {
+            let color = ghost.color(background);
+            (ghost.mesh, color)
+        };
+        scenery.set_ghosts(ghosts.into_iter().map(colored));
+        strokes
     }
 
     /// The ghosts of one step.
     fn ghosts(&self, step: usize) -> Result<Vec<Ghost>, RenderError> {
         let options = self.settings.surface_options;
-        Ok(self.settings.guides.ghosts(self.placed, step, options)?)
+        Ok(ghosts(
+            &self.settings.guides.ghosts,
+            self.placed,
+            step,
+            options,
+        )?)
     }
 
     pub(super) fn steps(&self) -> Range<usize> {
@@ -237,8 +279,8 @@ impl<'a> Views<'a> {
             subdivide: false,
             ..self.settings.surface_options
         };
-        for (mesh, _) in self.settings.guides.ghosts(self.placed, step, options)? {
-            places.extend_from_slice(mesh.positions());
+        for ghost in ghosts(&self.settings.guides.ghosts, self.placed, step, options)? {
+            places.extend_from_slice(ghost.mesh.positions());
         }
         Ok(places)
     }
@@ -301,14 +343,6 @@ impl<'a> Views<'a> {
 fn marker_holds(marker: &Part, place: DVec3) -> bool {
     let holds = |(low, high): (DVec3, DVec3)| place.cmpge(low).all() && place.cmple(high).all();
     marker.mesh().bounds().is_some_and(holds)
-}
-
-/// Has a scenery show ghosts; returns their edges, which are drawn onto the picture.
-fn set_ghosts(scenery: &mut Scenery, ghosts: Vec<Ghost>) -> Vec<Strokes<DVec3>> {
-    let colored = |(mesh, edges): Ghost| ((mesh, edges.color), edges);
-    let (ghosts, edges): (Vec<_>, _) = ghosts.into_iter().map(colored).unzip();
-    scenery.set_ghosts(ghosts);
-    edges
 }
 
 /// Nothing yet, in the light of the scene's lamps.

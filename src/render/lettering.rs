@@ -1,5 +1,6 @@
 //! Text on a finished picture.
 
+use std::f64::consts::FRAC_PI_4;
 use std::sync::LazyLock;
 
 use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
@@ -8,11 +9,14 @@ use glam::DVec2;
 use super::picture::Picture;
 use crate::shape::Color;
 
-/// Of DejaVu Sans what English and numbers need, a tau, and a box; `src/render/font/README.md` says where it is from.
+/// Of DejaVu Sans what titles and numbers need, and a box; `src/render/font/README.md` says where it is from.
 pub(crate) const FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
 
 /// Height of a capital letter in units of the font.
 const CAPITAL: f32 = 1493.0;
+
+/// Width of the seam around letters, in heights of capitals.
+const SEAM: f64 = 0.14;
 
 static FACE: LazyLock<FontRef<'static>> =
     LazyLock::new(|| FontRef::try_from_slice(FONT).expect("the font is part of the program"));
@@ -21,13 +25,41 @@ impl Picture {
     /// Writes a text in one line, its capitals so many pixels high, but no higher than the picture; `start` is the
     /// lower left corner of its first letter, in pixels.
     ///
-    /// The font has the printable characters of ASCII, `×`, `τ` and `−`; a box stands for any other character. What is
-    /// beyond an edge is cut off.
+    /// The font has the printable characters of ASCII and Latin-1, Greek without accents, `−`, dashes, quotation marks and
+    /// `…`; a box stands for any other character. What is beyond an edge is cut off.
     pub fn write(&mut self, text: &str, start: DVec2, height_px: f64, color: Color) {
+        let mut opacity = self.uncovered();
+        self.cover_text(text, start, height_px, &mut opacity);
+        self.blend(&opacity, color);
+    }
+
+    /// As [`Picture::write`], with a seam of another colour around all letters, so that they are read on anything.
+    pub fn write_haloed(
+        &mut self,
+        text: &str,
+        start: DVec2,
+        height_px: f64,
+        color: Color,
+        halo: Color,
+    ) {
+        let mut opacity = self.uncovered();
+        let seam = (SEAM * height_px).max(1.0);
+        for part in 0..8 {
+            let beside = DVec2::from_angle(f64::from(part) * FRAC_PI_4) * seam;
+            self.cover_text(text, start + beside, height_px, &mut opacity);
+        }
+        self.blend(&opacity, halo);
+        self.write(text, start, height_px, color);
+    }
+
+    fn uncovered(&self) -> Vec<f32> {
+        vec![0.0; self.size().width() as usize * self.size().height() as usize]
+    }
+
+    fn cover_text(&self, text: &str, start: DVec2, height_px: f64, opacity: &mut [f32]) {
         let (width, height) = (self.size().width(), self.size().height());
         let (columns, rows) = (f64::from(width), f64::from(height));
         let scale = scale(height_px.clamp(0.0, rows));
-        let mut opacity = vec![0.0_f32; width as usize * height as usize];
         let mut place = start;
         for character in text.chars() {
             let id = FACE.glyph_id(character);
@@ -48,7 +80,6 @@ impl Picture {
             }
             place.x += f64::from(FACE.as_scaled(scale).h_advance(id));
         }
-        self.blend(&opacity, color);
     }
 }
 
@@ -83,7 +114,7 @@ mod tests {
 
     #[test]
     fn characters_that_pictures_need_look_each_their_own_way() {
-        let all = (' '..='~').chain("×τ−".chars());
+        let all = (' '..='~').chain("×°éß…β−γτΩ–".chars());
         let shapes: Vec<_> = all.map(of).collect();
         for (index, shape) in shapes.iter().enumerate() {
             assert!(!shapes[..index].contains(shape), "{index}");
@@ -92,12 +123,28 @@ mod tests {
 
     #[test]
     fn what_the_font_lacks_is_a_box() {
-        let shape = of('ü');
+        let shape = of('ű');
         assert_ne!(shape, of(' '));
-        for character in ['漢', 'λ', '\n', '\u{10ffff}'] {
+        for character in ['漢', 'ж', '\n', '\u{10ffff}'] {
             assert_eq!(of(character), shape);
         }
-        assert!(lettering_width("ü", 20.0) > 10.0);
+        assert!(lettering_width("ű", 20.0) > 10.0);
+    }
+
+    #[test]
+    fn letters_with_a_seam_are_read_on_anything() {
+        for level in [0, 128, 255] {
+            let mut picture = Picture::filled(PictureSize::new(60, 40).unwrap(), Color([level; 3]));
+            let (ink, seam) = (Color([255; 3]), Color([0; 3]));
+            picture.write_haloed("H", DVec2::new(10.0, 30.0), 20.0, ink, seam);
+            // Across an upright: seam, ink, seam.
+            let row: Vec<u8> = (8..18).map(|x| picture.pixel(x, 15)[0]).collect();
+            let first = row
+                .iter()
+                .position(|&level| level == 255 && row.contains(&0));
+            assert!(first.is_some() || level == 255, "{row:?}");
+            assert!(row.contains(&0) && row.contains(&255), "{row:?}");
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Files that appear whole or not at all: written beside their place, then renamed.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File, Metadata};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -10,6 +10,7 @@ use tempfile::{Builder, NamedTempFile, TempDir};
 use thiserror::Error;
 
 use super::WriteError;
+use super::helper::SharedChild;
 
 /// Links that are followed before they are taken to go round in circles, as on Linux.
 const MAX_LINKS: usize = 40;
@@ -161,14 +162,17 @@ pub(super) fn directory_of(path: &Path) -> &Path {
 static WRITES: Mutex<Writes> = Mutex::new(Writes {
     unfinished: BTreeSet::new(),
     scratch: BTreeSet::new(),
+    helpers: BTreeMap::new(),
     are_abandoned: false,
 });
 
-struct Writes {
+pub(super) struct Writes {
     /// Their temporary files.
     unfinished: BTreeSet<PathBuf>,
     /// Folders that go when their owners end.
     scratch: BTreeSet<PathBuf>,
+    /// Programs that write some of them, by their process ids.
+    pub(super) helpers: BTreeMap<u32, SharedChild>,
     /// Whether no file may be begun or finished any more.
     are_abandoned: bool,
 }
@@ -179,13 +183,13 @@ struct Writes {
 struct Cancelled;
 
 impl Writes {
-    fn lock() -> MutexGuard<'static, Self> {
+    pub(super) fn lock() -> MutexGuard<'static, Self> {
         // A set of names is sound whoever panicked.
         WRITES.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Those in progress, where they may go on.
-    fn going_on() -> std::io::Result<MutexGuard<'static, Self>> {
+    pub(super) fn going_on() -> std::io::Result<MutexGuard<'static, Self>> {
         let writes = Self::lock();
         match writes.are_abandoned {
             true => Err(std::io::Error::other(Cancelled)),
@@ -199,6 +203,10 @@ impl Writes {
 pub fn abandon_writes() {
     let mut writes = Writes::lock();
     writes.are_abandoned = true;
+    // First: what they have open they would make anew.
+    for helper in writes.helpers.values() {
+        helper.end();
+    }
     for path in &writes.unfinished {
         // There is nobody left to tell.
         let _ = fs::remove_file(path);
@@ -261,6 +269,11 @@ impl Unfinished {
         })
     }
 
+    /// Where it is until it is finished.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
     pub(super) fn file(&mut self) -> &mut File {
         let file = self.file.as_mut();
         file.expect("there until it is persisted").as_file_mut()
@@ -285,7 +298,7 @@ impl Unfinished {
         Ok(self.file.take().expect("only this takes it, and only once"))
     }
 
-    fn persist(mut self, place: &Path) -> std::io::Result<()> {
+    pub(super) fn persist(mut self, place: &Path) -> std::io::Result<()> {
         let file = self.finished()?;
         // Held while the file gets its name: it is either unfinished or finished.
         let writes = Writes::going_on()?;
@@ -324,7 +337,7 @@ impl Drop for Unfinished {
     }
 }
 
-fn temporary_beside(place: &Path) -> std::io::Result<Unfinished> {
+pub(super) fn temporary_beside(place: &Path) -> std::io::Result<Unfinished> {
     temporary_in(directory_of(place), fs::metadata(place).ok())
 }
 
@@ -345,8 +358,20 @@ pub(super) fn temporary_in(
     Unfinished::begin(|| builder.tempfile_in(directory), replaced)
 }
 
+/// An error where all writing has been abandoned.
+pub(super) fn check_going_on() -> Result<(), WriteError> {
+    Writes::going_on()
+        .map(drop)
+        .map_err(|_| WriteError::Cancelled)
+}
+
+/// Whether an error says that all writing has been abandoned.
+pub(super) fn is_cancelled(error: &std::io::Error) -> bool {
+    error.get_ref().is_some_and(|said| said.is::<Cancelled>())
+}
+
 pub(super) fn io_error(path: &Path, source: std::io::Error) -> WriteError {
-    if source.get_ref().is_some_and(|said| said.is::<Cancelled>()) {
+    if is_cancelled(&source) {
         return WriteError::Cancelled;
     }
     // tempfile names its file behind what the system says; nobody else knows that file.

@@ -1,11 +1,14 @@
-//! Photosurfaces as files: glTF, GLB, PLY, and the JSON report.
+//! Photosurfaces as files: glTF, GLB, PLY, and the JSON report; pictures as films.
 
 mod camera;
 mod error;
 mod export;
 mod file;
+mod film;
 mod format;
 mod gltf;
+mod growing;
+mod helper;
 mod layer;
 mod pack;
 mod ply;
@@ -20,6 +23,7 @@ pub(crate) use export::FRAMES_PER_SECOND;
 pub use export::{Export, Playback};
 pub(crate) use file::ScratchFolder;
 pub use file::{Target, abandon_writes, destination, write_whole, write_whole_target};
+pub use film::{FilmError, FilmFormat, FilmSettings, FilmWriter, FrameRate};
 pub use format::Format;
 pub use gltf::{GltfFile, GltfOutput, replaced_data, write_glb, write_gltf, write_whole_gltf};
 pub use ply::write_ply;

@@ -69,6 +69,7 @@ mod export {
 }
 
 mod render {
+    mod films;
     mod golden;
     mod lamps;
     mod one_call;
@@ -81,6 +82,7 @@ mod cli {
     mod commands;
     mod documents;
     mod faults;
+    mod films;
     mod flags;
     mod flight;
     mod models;

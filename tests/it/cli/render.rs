@@ -68,6 +68,11 @@ fn every_flag_of_a_picture_changes_it() {
         "--samples 1",
         "--background #ffffff",
         "--full-sky",
+        "--labels",
+        "--caption speed",
+        "--caption gamma",
+        "--caption time",
+        "--caption model",
         "--view outside",
         "--method mesh --no-subdivide --beta 0.99",
     ] {
@@ -84,6 +89,8 @@ fn every_flag_of_a_picture_changes_it() {
         "--ghost contracted",
         "--axes",
         "--scale-bar",
+        "--labels",
+        "--caption speed,time",
         "--together --steps 0,9",
     ] {
         assert_ne!(
@@ -92,6 +99,76 @@ fn every_flag_of_a_picture_changes_it() {
             "{flags}"
         );
     }
+}
+
+/// A title of the user's: in the strip above a sheet, once, whatever it is made of.
+#[test]
+fn captions_are_on_sheets_and_films_and_where_they_are_asked_for() {
+    let workplace = Workplace::new();
+    let titled = |title: &str| {
+        let title = serde_json::to_string(title).unwrap();
+        let objects = r#"[ { "name": "ball", "shape": { "sphere": { "radius": 1, "resolution": 8 } }, "position": [0, 3, 0] } ]"#;
+        let scene = format!(
+            r#"{{ "title": {title}, "steps": [0, 1], "observer": {{ "velocity": {{ "beta": 0.6 }} }},
+               "objects": {objects}, "tolerance": {{ "relative": 0.1 }} }}"#
+        );
+        workplace.write("scene.json", scene);
+    };
+    let render = |flags: &str| {
+        let line = format!("render scene.json --size 200x150 --samples 1 {flags} -o a.png");
+        workplace.run(&line).success();
+        image::load_from_memory(&workplace.read("a.png"))
+            .unwrap()
+            .to_rgb8()
+    };
+    titled("A ball");
+    let bare = render("--sheet --caption none");
+    assert_eq!(bare.dimensions(), (404, 304));
+    let sheet = render("--sheet");
+    let strip = sheet.height() - bare.height();
+    assert!(sheet.width() == 404 && (15..40).contains(&strip), "{strip}");
+    let part = |picture: &image::RgbImage, from: u32| {
+        let rows = from..picture.height();
+        rows.flat_map(|y| (0..404).map(move |x| (x, y)))
+            .map(|(x, y)| picture.get_pixel(x, y).0)
+            .collect::<Vec<_>>()
+    };
+    // Below the strip only the proper times are new: nothing is covered by the title.
+    let (with, without) = (part(&sheet, strip), part(&bare, 0));
+    let changed = with.iter().zip(&without).filter(|(a, b)| a != b).count();
+    assert!((50..2000).contains(&changed), "{changed}");
+    for title in [
+        "Another ball",
+        "Ä ball, γ × β …",
+        "a\tb\u{1b}[31m\n",
+        "漢字",
+        &"long ".repeat(3000),
+    ] {
+        titled(title);
+        let other = render("--sheet");
+        assert_eq!(other.dimensions(), sheet.dimensions(), "{title}");
+        assert!(part(&other, strip) == with, "{title}");
+        assert!(other != sheet, "{title}");
+        // On a single picture only where it is asked for.
+        let plain = render("--steps 0");
+        let titled = render("--steps 0 --caption title");
+        assert!(plain != titled && render("--steps 0 --caption none") == plain);
+    }
+    for (flags, words) in [
+        ("--caption none,title", vec!["--caption", "none"]),
+        ("--caption loud", vec!["--caption", "gamma"]),
+    ] {
+        workplace
+            .run(&format!("render scene.json {flags}"))
+            .error(&words);
+    }
+    // A film tells its times.
+    let film = "render scene.json --size 200x150 --samples 1 --steps 0,1 --film";
+    workplace.run(&format!("{film} with.png")).success();
+    workplace
+        .run(&format!("{film} without.png --caption none"))
+        .success();
+    assert!(workplace.read("with.png") != workplace.read("without.png"));
 }
 
 #[test]
@@ -140,7 +217,7 @@ fn pictures_that_make_no_sense_are_refused_before_any_work() {
 #[test]
 fn a_sheet_shows_every_step_twice() {
     let workplace = Workplace::with_ball();
-    let flags = "render ball.json --steps 0,3 --size 40x30";
+    let flags = "render ball.json --steps 0,3 --size 40x30 --caption none";
     let run = workplace.run(&format!("{flags} --sheet")).success();
     assert!(
         run.stderr.contains("above, what the observer sees"),
@@ -297,7 +374,7 @@ fn cameras_look_somewhere_at_any_speed() {
     for rapidity in ["20", "200", "350"] {
         for direction in ["1,2,3", "0,0,-1", "-1,0,0"] {
             let line = format!(
-                "render ball.json --sheet --no-subdivide --size 16x12 --samples 1 --steps=-1,0,1 \
+                "render ball.json --sheet --caption none --no-subdivide --size 16x12 --samples 1 --steps=-1,0,1 \
                  --rapidity {rapidity} --direction {direction} -o sheet.png"
             );
             let run = workplace.run(&line);
