@@ -8,8 +8,9 @@ use photosurface::tessellate::Precision;
 use photosurface::write::Format;
 use photosurface::{PlacedScene, Scene, SurfaceOptions, Tolerance};
 
-use super::args::{Given, whole_number};
+use super::args::Given;
 use super::messages::{Verbosity, grouped};
+use super::values::whole_number;
 use super::wording::in_words_of_flags;
 
 /// Of more objects than this only so many are named.

@@ -10,7 +10,8 @@ use photosurface::render::{CameraError, PictureSize};
 use photosurface::shape::Color;
 use photosurface::{DVec3, PictureMethod, PictureSettings, PictureView, Scene};
 
-use super::args::{Given, count, number, refuse, vector};
+use super::args::{Given, refuse};
+use super::values::{count, number, vector};
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Camera (places and directions are in the observer's frame)")]

@@ -10,7 +10,7 @@ use photosurface::write::Format;
 use super::accuracy::{AccuracyArgs, DetailArgs, grouped_number, predicted, triangles};
 use super::args::{InputArgs, ObserverArgs};
 use super::effects::EffectArgs;
-use super::input::Input;
+use super::input::{Input, tell_of_inside};
 use super::messages::{Verbosity, counted, notes_so_far, print_if_open, shown};
 use super::models::ModelsArgs;
 use super::output::FileFormat;
@@ -66,6 +66,7 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
     let provenance = provenance(&args.input, &input.files);
     let scene = args.effects.scene(args.accuracy.scene(input.scene));
     let placed = args.models.placed(scene, input.models)?;
+    tell_of_inside(&placed, verbosity);
     for (name, part) in placed.objects().flat_map(|(_, parts)| parts) {
         verbosity.detail(format_args!(
             "{name}: {}, {}",

@@ -11,7 +11,7 @@ use rayon::ThreadPoolBuilder;
 
 use super::hints::meant;
 use super::status::{INTERRUPTED, Status, ended};
-use super::{args, check, cost, example, export, flight, messages, render, schema};
+use super::{check, cost, example, export, flight, messages, render, schema, values};
 
 /// More threads than so many for each core, and than so many on any machine, only wait for each other.
 const THREADS_PER_CORE: usize = 4;
@@ -36,7 +36,7 @@ pub(super) struct Cli {
     #[command(subcommand)]
     command: Command,
     /// Compute with N threads at once [default: one for each core, or RAYON_NUM_THREADS of the environment]
-    #[arg(long, value_name = "N", global = true, value_parser = args::count, allow_hyphen_values = true, help_heading = "Work")]
+    #[arg(long, value_name = "N", global = true, value_parser = values::count, allow_hyphen_values = true, help_heading = "Work")]
     threads: Option<NonZeroUsize>,
 }
 
@@ -119,7 +119,7 @@ fn advised(mut error: clap::Error) -> clap::Error {
     };
     let flags = match export::Animate::from_str(argument, false) {
         Ok(_) => vec![format!("--animate={argument}")],
-        Err(_) => meant(argument, command_of_process().as_deref()),
+        Err(_) => meant(&Cli::command(), argument, command_of_process().as_deref()),
     };
     let similar = match error.get(ContextKind::SuggestedArg) {
         Some(ContextValue::String(similar)) => vec![similar.clone()],

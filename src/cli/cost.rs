@@ -10,7 +10,7 @@ use photosurface::study::{IntegratorSettings, IntegratorStudy, Made, RaySettings
 use photosurface::{CostSettings, CostStudy, DVec3, PlacedScene, Tolerance};
 
 use super::accuracy::tolerance;
-use super::args::{Given, InputArgs, ObserverArgs, count, number, refuse, vector, whole_number};
+use super::args::{Given, InputArgs, ObserverArgs, refuse};
 use super::camera::{samples, size};
 use super::cost_output::CostOutputArgs;
 use super::cost_tables::{
@@ -21,6 +21,7 @@ use super::input::{Input, tell_of_missing};
 use super::messages::{Verbosity, grouped, print_if_open};
 use super::models::ModelArgs;
 use super::output::{Bar, check_destinations, is_stdout, write_result};
+use super::values::{count, number, vector, whole_number};
 
 /// Show what accuracy costs: triangles, bytes, time and memory of meshes over tolerances, rays and time of pictures
 ///

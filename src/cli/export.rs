@@ -16,15 +16,16 @@ use photosurface::write::{Format, Playback, Report, StageTime, WriteError};
 use photosurface::{ExportSettings, Exported, PlacedScene, Textures};
 
 use super::accuracy::{AccuracyArgs, DetailArgs};
-use super::args::{InputArgs, ObserverArgs, number};
+use super::args::{InputArgs, ObserverArgs};
 use super::effects::{EffectArgs, tell_of_ramp};
 use super::file_camera::FileCameraArgs;
-use super::input::{Input, tell_of_missing};
+use super::input::{Input, tell_of_inside, tell_of_missing};
 use super::messages::{Verbosity, counted, print, size, stdout_is_closed};
 use super::models::ModelsArgs;
 use super::output::{Bar, FileFormat, check_destinations, from_first_to_last, is_stdout};
 use super::provenance::provenance;
 use super::status::Status;
+use super::values::number;
 use super::wording::{in_words_of_flags, or_ply};
 
 /// Shown below the flags.
@@ -147,6 +148,7 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     let scene = args.effects.scene(args.accuracy.scene(input.scene));
     tell_of_ramp(&scene, args.verbosity);
     let placed = args.models.placed(scene, input.models)?;
+    tell_of_inside(&placed, args.verbosity);
     let is_side_by_side = !args.models.side_by_side()?.is_empty();
     let camera = args.camera.settings(is_side_by_side)?;
     let settings = ExportSettings {

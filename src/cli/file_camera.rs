@@ -7,8 +7,8 @@ use photosurface::jobs::{
 use photosurface::render::{CameraError, PictureSize};
 use photosurface::{DVec3, PictureMethod, PictureSettings, PictureView};
 
-use super::args::{number, vector};
 use super::camera::size;
+use super::values::{number, vector};
 
 #[derive(Debug, clap::Args)]
 #[command(

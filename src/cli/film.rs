@@ -10,9 +10,10 @@ use photosurface::render::{Picture, PictureSize};
 use photosurface::scene::even_steps;
 use photosurface::write::{FilmError, FilmFormat, FilmSettings, FilmWriter, FrameRate};
 
-use super::args::{number, refuse};
+use super::args::refuse;
 use super::messages::print;
 use super::output::is_stdout;
+use super::values::number;
 
 /// Length of a film in seconds, if nothing else is said.
 const SECONDS: f64 = 8.0;

@@ -10,12 +10,13 @@ use photosurface::study::PlotSize;
 use photosurface::{DVec3, Scene};
 use serde::Serialize;
 
-use super::args::{InputArgs, ObserverArgs, number, vector};
+use super::args::{InputArgs, ObserverArgs};
 use super::drawing::{DrawingFormat, plot_size};
 use super::flight_tables::{csv_of_moments, table_of};
 use super::input::Input;
 use super::messages::{Verbosity, print_if_open};
 use super::output::{check_destinations, shows_table, write_result};
+use super::values::{number, vector};
 
 /// Rows of the table of a flight whose scene has no steps.
 const ROWS: usize = 11;

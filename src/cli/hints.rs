@@ -1,7 +1,5 @@
 //! The flag that was meant, for an error about one that nobody knows.
 
-use clap::CommandFactory;
-
 /// Words that people try, each with the flags that they mean, of which a command has some.
 const MEANT: &[(&str, &[&str])] = &[
     ("accuracy", &["tolerance"]),
@@ -49,7 +47,7 @@ const MEANT: &[(&str, &[&str])] = &[
 ];
 
 /// The flags of a command that `argument` may mean, as users write them; none if nobody can tell.
-pub(super) fn meant(argument: &str, command: Option<&str>) -> Vec<String> {
+pub(super) fn meant(cli: &clap::Command, argument: &str, command: Option<&str>) -> Vec<String> {
     let word = argument.trim_start_matches('-');
     let word = word
         .split('=')
@@ -57,7 +55,6 @@ pub(super) fn meant(argument: &str, command: Option<&str>) -> Vec<String> {
         .unwrap_or(word)
         .to_lowercase()
         .replace('_', "-");
-    let cli = super::command::Cli::command();
     let Some(command) = command.and_then(|name| cli.find_subcommand(name)) else {
         return vec![];
     };
@@ -75,6 +72,8 @@ pub(super) fn meant(argument: &str, command: Option<&str>) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use clap::CommandFactory;
+
     use super::*;
 
     #[test]
@@ -96,18 +95,18 @@ mod tests {
                 let is_there = command
                     .get_arguments()
                     .any(|argument| argument.get_long() == Some(tried));
-                let hint = meant(&own, Some(command.get_name()));
+                let hint = meant(&cli, &own, Some(command.get_name()));
                 assert!(!is_there || hint.iter().all(|hint| *hint != own), "{own}");
             }
         }
         assert!(MEANT.windows(2).all(|pair| pair[0].0 != pair[1].0));
-        assert_eq!(meant("--speed=0.9", Some("export")), ["--beta"]);
-        assert_eq!(meant("--resolution", Some("render")), ["--size"]);
-        assert_eq!(meant("--resolution", Some("check")), [""; 0]);
+        assert_eq!(meant(&cli, "--speed=0.9", Some("export")), ["--beta"]);
+        assert_eq!(meant(&cli, "--resolution", Some("render")), ["--size"]);
+        assert_eq!(meant(&cli, "--resolution", Some("check")), [""; 0]);
         assert_eq!(
-            meant("--samples", Some("cost")),
+            meant(&cli, "--samples", Some("cost")),
             ["--places", "--pixel-samples"]
         );
-        assert_eq!(meant("--nonsense", Some("export")), [""; 0]);
+        assert_eq!(meant(&cli, "--nonsense", Some("export")), [""; 0]);
     }
 }

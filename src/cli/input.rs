@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow, bail, ensure};
 use photosurface::jobs::{MAX_SCENE_BYTES, fly_by, passing_observer, scene_from_bytes};
 use photosurface::material::Normals;
+use photosurface::pipeline::Around;
 use photosurface::read::{
     Access, EXPECTED_MODEL, Findings, ReadError, is_model_extension, is_model_of_one_file,
     read_whole, with_normals,
 };
 use photosurface::scene::BUILT_IN_SCENES;
-use photosurface::{Model, Object, Observer, Scene, Source, Textures};
+use photosurface::{Model, Object, Observer, PlacedScene, Scene, Source, Textures};
 
 use super::args::{InputArgs, ObserverArgs};
 use super::example::built_in;
@@ -213,6 +214,16 @@ pub(super) fn tell_of_missing(textures: &Textures, scene: &Scene, verbosity: Ver
         let cause = std::error::Error::source(reason);
         let cause = cause.map_or(String::new(), |cause| format!(": {cause}"));
         verbosity.note(format_args!("{file}{missing}: {reason}{cause}"));
+    }
+}
+
+/// Tells of the objects that the observer is inside of, which are seen from within.
+pub(super) fn tell_of_inside(placed: &PlacedScene, verbosity: Verbosity) {
+    for Around { object, step } in placed.around_observer() {
+        let proper_time = placed.scene().steps()[step];
+        verbosity.note(format_args!(
+            "the observer is inside of \"{object}\" at step {step} (proper time {proper_time}), and sees it from within"
+        ));
     }
 }
 

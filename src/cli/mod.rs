@@ -28,6 +28,7 @@ mod schema;
 mod speeds;
 mod status;
 mod tables;
+mod values;
 mod wording;
 
 pub(crate) use command::run;

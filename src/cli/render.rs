@@ -20,7 +20,7 @@ use super::camera::{CameraArgs, Method, View};
 use super::effects::{EffectArgs, tell_of_ramp};
 use super::film::{Film, FilmArgs};
 use super::guides::GuideArgs;
-use super::input::{Input, tell_of_missing};
+use super::input::{Input, tell_of_inside, tell_of_missing};
 use super::messages::{Verbosity, counted, print};
 use super::models::ModelsArgs;
 use super::output::{Bar, check_destinations, extension, from_first_to_last, is_stdout};
@@ -114,6 +114,10 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     check_destinations(files.iter().cloned(), &input.files)?;
     let scene = &scenes[0].1;
     tell_of_ramp(scene, verbosity);
+    tell_of_inside(
+        &PlacedScene::new(scene.clone(), input.models.clone())?,
+        verbosity,
+    );
     settings.background = camera.background(scene, settings.background);
     settings.surface_options = args.accuracy.wanted(Precision::Double);
     let fits_budget = camera.shows_meshes(method) && settings.surface_options.subdivide;

@@ -4,7 +4,7 @@ use anyhow::{Context, ensure};
 use photosurface::DVec3;
 use photosurface::spacetime::{Velocity, VelocityError};
 
-use super::args::numbers;
+use super::values::numbers;
 
 /// The speed of the observer, in one of four forms.
 #[derive(Debug, clap::Args)]

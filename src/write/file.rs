@@ -10,7 +10,7 @@ use tempfile::{Builder, NamedTempFile, TempDir};
 use thiserror::Error;
 
 use super::WriteError;
-use super::helper::SharedChild;
+use super::child::SharedChild;
 
 /// Links that are followed before they are taken to go round in circles, as on Linux.
 const MAX_LINKS: usize = 40;

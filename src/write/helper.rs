@@ -1,9 +1,9 @@
 //! Another program that writes a file for this one.
 
 use std::io;
-use std::process::{Child, ChildStdin, Command, ExitStatus};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::process::{ChildStdin, Command, ExitStatus};
 
+use super::child::SharedChild;
 use super::file::Writes;
 
 /// A program that is at work for this one. It ends when this is dropped, or with
@@ -11,24 +11,6 @@ use super::file::Writes;
 pub(super) struct Helper {
     id: u32,
     child: SharedChild,
-}
-
-/// Locked only for moments: nobody waits for the program with the lock held.
-#[derive(Clone)]
-pub(super) struct SharedChild(Arc<Mutex<Child>>);
-
-impl SharedChild {
-    fn lock(&self) -> MutexGuard<'_, Child> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Has the program end at once.
-    pub(super) fn end(&self) {
-        let mut child = self.lock();
-        // It may have ended already.
-        let _ = child.kill();
-        let _ = child.wait();
-    }
 }
 
 impl Helper {
@@ -45,14 +27,14 @@ impl Helper {
         let mut child = command.spawn()?;
         let stdin = child.stdin.take();
         let id = child.id();
-        let child = SharedChild(Arc::new(Mutex::new(child)));
+        let child = SharedChild::new(child);
         writes.helpers.insert(id, child.clone());
         Ok((Self { id, child }, stdin))
     }
 
     /// How the program has ended, if it has.
     pub(super) fn status(&self) -> io::Result<Option<ExitStatus>> {
-        self.child.lock().try_wait()
+        self.child.status()
     }
 }
 

@@ -1,6 +1,7 @@
 //! Photosurfaces as files: glTF, GLB, PLY, and the JSON report; pictures as films.
 
 mod camera;
+mod child;
 mod error;
 mod export;
 mod file;
@@ -23,7 +24,9 @@ pub(crate) use export::FRAMES_PER_SECOND;
 pub use export::{Export, Playback};
 pub(crate) use file::ScratchFolder;
 pub use file::{Target, abandon_writes, destination, write_whole, write_whole_target};
-pub use film::{FilmError, FilmFormat, FilmSettings, FilmWriter, FrameRate};
+pub use film::{
+    FilmError, FilmFormat, FilmFormatError, FilmSettings, FilmWriter, FrameRate, FrameRateError,
+};
 pub use format::Format;
 pub use gltf::{GltfFile, GltfOutput, replaced_data, write_glb, write_gltf, write_whole_gltf};
 pub use ply::write_ply;

@@ -1,11 +1,9 @@
 //! Why pictures do not make a film.
 
-use std::path::PathBuf;
-
 use thiserror::Error;
 
-use super::format::FilmFormat;
-use super::rate::MAX_GIF_RATE;
+use super::format::{FilmFormat, FilmFormatError};
+use super::rate::{FrameRateError, MAX_GIF_RATE};
 use crate::write::WriteError;
 
 /// Why pictures do not make a film.
@@ -13,11 +11,11 @@ use crate::write::WriteError;
 #[non_exhaustive]
 pub enum FilmError {
     /// The name of the file does not say the format.
-    #[error("{}: unknown extension of a film, expected .gif, .png (APNG), .webp or .mp4", .0.display())]
-    Extension(PathBuf),
+    #[error(transparent)]
+    Format(#[from] FilmFormatError),
     /// A frame rate that no film has.
-    #[error("{0:?} frames per second, expected a number from 1 to 120")]
-    FrameRate(f64),
+    #[error(transparent)]
+    FrameRate(#[from] FrameRateError),
     /// A frame rate that a GIF cannot say.
     #[error(
         "{0} frames per second, but a GIF shows at most {MAX_GIF_RATE}; choose fewer, or a .png (APNG), .webp or .mp4"

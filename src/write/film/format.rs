@@ -1,9 +1,14 @@
 //! Formats of films.
 
 use std::fmt::{self, Display};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::FilmError;
+use thiserror::Error;
+
+/// A name that does not say the format of a film.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{}: unknown extension of a film, expected .gif, .png (APNG), .webp or .mp4", .0.display())]
+pub struct FilmFormatError(pub PathBuf);
 
 /// A format of films.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,14 +29,14 @@ impl FilmFormat {
     /// # Errors
     ///
     /// The extension is none of `.gif`, `.png`, `.apng`, `.webp` and `.mp4`, in capitals or not.
-    pub fn from_path(path: &Path) -> Result<Self, FilmError> {
+    pub fn from_path(path: &Path) -> Result<Self, FilmFormatError> {
         let extension = path.extension().unwrap_or_default().to_string_lossy();
         match extension.to_ascii_lowercase().as_str() {
             "gif" => Ok(Self::Gif),
             "png" | "apng" => Ok(Self::Apng),
             "webp" => Ok(Self::WebP),
             "mp4" => Ok(Self::Mp4),
-            _ => Err(FilmError::Extension(path.to_owned())),
+            _ => Err(FilmFormatError(path.to_owned())),
         }
     }
 }

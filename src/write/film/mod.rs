@@ -8,10 +8,12 @@ mod gif;
 mod mp4;
 mod palette;
 mod rate;
+mod settings;
 mod webp;
 mod writer;
 
 pub use error::FilmError;
-pub use format::FilmFormat;
-pub use rate::FrameRate;
-pub use writer::{FilmSettings, FilmWriter};
+pub use format::{FilmFormat, FilmFormatError};
+pub use rate::{FrameRate, FrameRateError};
+pub use settings::FilmSettings;
+pub use writer::FilmWriter;

@@ -1,9 +1,14 @@
 //! How long each frame of a film is shown.
 
-use super::FilmError;
+use thiserror::Error;
 
 /// Frames per second that a GIF has at most: programs show a frame of less than 2/100 s for 1/10 s.
 pub(super) const MAX_GIF_RATE: f64 = 50.0;
+
+/// A frame rate that no film has.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("{0:?} frames per second, expected a number from 1 to 120")]
+pub struct FrameRateError(pub f64);
 
 /// Frames per second of a film, from 1 to 120.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,10 +20,10 @@ impl FrameRate {
     /// # Errors
     ///
     /// The number is below 1, above 120, or none.
-    pub fn new(frames_per_second: f64) -> Result<Self, FilmError> {
+    pub fn new(frames_per_second: f64) -> Result<Self, FrameRateError> {
         match (1.0..=120.0).contains(&frames_per_second) {
             true => Ok(Self(frames_per_second)),
-            false => Err(FilmError::FrameRate(frames_per_second)),
+            false => Err(FrameRateError(frames_per_second)),
         }
     }
 

@@ -6,28 +6,13 @@ use std::path::Path;
 use super::apng::ApngFilm;
 use super::gif::GifFilm;
 use super::mp4::Mp4Film;
-use super::rate::FrameRate;
+use super::settings::FilmSettings;
 use super::webp::{LENGTH_PLACE, WebPFilm};
 use super::{FilmError, FilmFormat};
-use crate::render::{Picture, PictureSize};
+use crate::render::Picture;
 use crate::write::WriteError;
 use crate::write::file::io_error;
 use crate::write::growing::Growing;
-
-/// All settings on which a film depends, but for its frames.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FilmSettings {
-    /// The format.
-    pub format: FilmFormat,
-    /// Width and height of every frame. An MP4 with an odd side shows the last row or column of pixels twice.
-    pub size: PictureSize,
-    /// Number of frames.
-    pub frames: usize,
-    /// Frames per second.
-    pub rate: FrameRate,
-    /// Whether the film begins anew when it has ended, where the format can say so; an MP4 cannot.
-    pub loops: bool,
-}
 
 /// A film in the making. Each frame is written as soon as it is there, and none is kept. The file appears when the film is
 /// finished; if that does not happen, what stood there before stays.
