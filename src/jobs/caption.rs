@@ -71,9 +71,18 @@ impl Caption {
         self.title || self.speed || self.gamma || self.model
     }
 
-    /// The title of a scene in one line, if it has one and that is asked for.
+    /// The title of a scene in one line, or the name of its only object, if that is asked for.
     pub(super) fn title(self, placed: &PlacedScene) -> Option<String> {
-        let title = placed.scene().title().filter(|_| self.title)?;
+        if !self.title {
+            return None;
+        }
+        let scene = placed.scene();
+        // A mesh by itself is called by its name.
+        let title = match (scene.title(), scene.objects()) {
+            (Some(title), _) => title,
+            (None, [alone]) => &alone.name,
+            (None, _) => return None,
+        };
         let shown = title.chars().take(MAX_TITLE);
         let text: String = shown
             .map(|c| if c.is_control() { ' ' } else { c })
@@ -192,6 +201,14 @@ fn time(time: f64, all: &[f64]) -> String {
 fn short(number: f64) -> String {
     match number.to_string() {
         text if text.len() <= 8 => text,
+        _ if (1e-3..1e6).contains(&number.abs()) => {
+            let places = (5.0 - number.abs().log10().floor()).clamp(0.0, 8.0) as usize;
+            let text = format!("{number:.places$}");
+            match text.contains('.') {
+                true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+                false => text,
+            }
+        }
         _ => scientific_to(number, 5),
     }
 }

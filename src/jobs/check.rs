@@ -51,11 +51,12 @@ pub struct CheckedObject {
     /// its place there; for a moving object, in the axes of its rest frame. Absent if the object has no vertices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_rest: Option<Bounds>,
-    /// The box around the places where these vertices are seen at all steps, in the observer's frame. Between vertices a
-    /// photosurface may reach beyond.
+    /// The box around the places where these vertices are seen at the steps that were looked at, in the observer's frame.
+    /// Between vertices a photosurface may reach beyond.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub photosurface: Option<Bounds>,
-    /// The same at each step.
+    /// The same at each of these steps: at all, or at so many as together have some million vertices, evenly spread from the
+    /// first to the last.
     pub photosurface_at_steps: Vec<CheckedStep>,
 }
 
@@ -168,7 +169,10 @@ impl CheckedObject {
                 }
             })
             .collect();
-        for (step, &proper_time) in placed.scene().steps().iter().enumerate() {
+        let vertices = objects.iter().map(|object| object.vertices).sum();
+        let steps = placed.scene().steps();
+        for step in steps_looked_at(steps.len(), vertices) {
+            let proper_time = steps[step];
             let mut surfaces = placed.photosurfaces(step, options)?;
             for object in &mut objects {
                 let parts = surfaces.by_ref().take(object.parts);
@@ -185,6 +189,20 @@ impl CheckedObject {
             }
         }
         Ok(objects)
+    }
+}
+
+/// At most so many vertices are looked at, unless one step has more.
+const MAX_VERTICES: usize = 5_000_000;
+
+/// Steps of which bounds are told: all if they are few, else evenly spread, the first and the last among them.
+fn steps_looked_at(steps: usize, vertices: usize) -> Vec<usize> {
+    let count = (MAX_VERTICES / vertices.max(1)).clamp(2, steps.max(2));
+    match count >= steps {
+        true => (0..steps).collect(),
+        false => (0..count)
+            .map(|number| number * (steps - 1) / (count - 1))
+            .collect(),
     }
 }
 
@@ -242,5 +260,21 @@ impl CheckedEffect {
             }
         });
         costs.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn some_of_many_steps_are_looked_at() {
+        assert_eq!(steps_looked_at(7, 1000), Vec::from_iter(0..7));
+        assert_eq!(steps_looked_at(0, 0), [0; 0]);
+        assert_eq!(steps_looked_at(1, usize::MAX), [0]);
+        assert_eq!(steps_looked_at(100, 10_000_000), [0, 99]);
+        let some = steps_looked_at(100_000, 5000);
+        assert_eq!((some.len(), some[0], some[999]), (1000, 0, 99_999));
+        assert!(some.is_sorted());
     }
 }

@@ -63,11 +63,9 @@ impl PictureSettings {
     /// The size, in pixels, of a picture of these cells.
     pub(super) fn page_size(&self, page: &Page) -> Result<PictureSize, CameraError> {
         let columns = page.iter().map(Vec::len).max().unwrap_or(1);
-        grid_size(
-            self.camera.size,
-            columns,
-            page.len() * self.views_of_a_cell(),
-        )
+        let rows = page.len() * self.views_of_a_cell();
+        let size = grid_size(self.camera.size, columns, rows)?;
+        PictureSize::new(size.width(), size.height() + self.strip_height())
     }
 
     /// The height of the strip above a sheet in which the caption of all of it stands, in pixels.

@@ -248,7 +248,7 @@ fn messages_say_what_is_wrong() {
     for stdin in [triangle("1"), r#"{ "asset": { "version": "2.0" } }"#.into()] {
         workplace
             .run_with("check -", stdin.as_bytes(), &[])
-            .error(&["stdin must be a scene (JSON) or a GLB"]);
+            .error(&["stdin must be a scene (JSON), or a GLB, PLY, STL or OFF"]);
     }
     let run = workplace
         .run("export one.obj -o no/such/a.glb")

@@ -180,7 +180,7 @@ fn pictures_have_models_side_by_side() {
     };
     assert_eq!(size("--models seen,rest --steps 0 -o plain.png"), [84, 30]);
     assert_eq!(
-        size("--models seen,rest,contracted --sheet -o plain.png"),
+        size("--models seen,rest,contracted --sheet --caption none -o plain.png"),
         [128, 132]
     );
     assert_eq!(
@@ -203,7 +203,7 @@ fn pictures_have_models_side_by_side() {
     };
     let brightest = |picture: &image::RgbImage, columns: std::ops::Range<u32>| {
         let pixels = picture.enumerate_pixels();
-        let inside = pixels.filter(|(x, y, _)| columns.contains(x) && *y > 12);
+        let inside = pixels.filter(|(x, y, _)| columns.contains(x) && *y > 16);
         inside.map(|(_, _, pixel)| pixel.0[1]).max().unwrap()
     };
     let alone = picture("--models rest --exposure auto");
