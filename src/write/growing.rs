@@ -13,7 +13,7 @@ pub(super) struct Growing(Kind);
 
 enum Kind {
     Whole {
-        unfinished: Unfinished,
+        unfinished: Box<Unfinished>,
         place: PathBuf,
     },
     /// A device or a pipe, which is written to as it is.
@@ -32,7 +32,7 @@ impl Growing {
                 Kind::Special(file.map_err(here)?)
             }
             Destination::Regular(place) => Kind::Whole {
-                unfinished: temporary_beside(&place).map_err(here)?,
+                unfinished: Box::new(temporary_beside(&place).map_err(here)?),
                 place,
             },
         }))

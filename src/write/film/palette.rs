@@ -82,9 +82,9 @@ impl Moments {
     fn with(mut self, bin: &Bin) -> Self {
         let (pixels, mean) = (bin.pixels as f64, bin.mean());
         self.pixels += pixels;
-        for channel in 0..3 {
-            self.sum[channel] += pixels * mean[channel];
-            self.squares[channel] += pixels * mean[channel] * mean[channel];
+        for (channel, mean) in mean.into_iter().enumerate() {
+            self.sum[channel] += pixels * mean;
+            self.squares[channel] += pixels * mean * mean;
         }
         self
     }

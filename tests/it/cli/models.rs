@@ -196,14 +196,14 @@ fn pictures_have_models_side_by_side() {
     // One exposure for all columns: that of the bright photosurface darkens what is at rest beside it.
     let picture = |flags: &str| {
         let line = format!(
-            "render plain.json --steps 0 --size 40x30 --fov 60 --samples 1 --searchlight {flags} -o -"
+            "render plain.json --beta 0.5 --steps 0 --size 40x60 --fov 30 --samples 1 --searchlight {flags} -o -"
         );
         let bytes = workplace.run(&line).success().stdout;
         image::load_from_memory(&bytes).unwrap().into_rgb8()
     };
     let brightest = |picture: &image::RgbImage, columns: std::ops::Range<u32>| {
         let pixels = picture.enumerate_pixels();
-        let inside = pixels.filter(|(x, y, _)| columns.contains(x) && *y > 16);
+        let inside = pixels.filter(|(x, y, _)| columns.contains(x) && *y > 20);
         inside.map(|(_, _, pixel)| pixel.0[1]).max().unwrap()
     };
     let alone = picture("--models rest --exposure auto");
