@@ -32,8 +32,9 @@ pub(super) struct GuideArgs {
     #[arg(long)]
     labels: bool,
     /// What is written on a picture, or above a sheet: "title" of the scene, "speed" and "gamma" of the objects relative to
-    /// the observer, its proper "time", the "model" under which objects are shown; or "none". The names of ghosts' models stand
-    /// below [default: title,speed,gamma,time on sheets and films, none on other pictures]
+    /// the observer, its proper "time", the "model" under which objects are shown, the "scale" of views from outside; or "none".
+    /// The names of ghosts' models stand below [default: title,speed,gamma,time,scale on sheets and films, none on other
+    /// pictures]
     #[arg(long, value_name = "PART,...", value_enum, value_delimiter = ',')]
     caption: Vec<Part>,
 }
@@ -46,6 +47,7 @@ enum Part {
     Gamma,
     Time,
     Model,
+    Scale,
     None,
 }
 
@@ -55,7 +57,7 @@ impl GuideArgs {
         Ok(Guides {
             ghosts: self.ghost.clone(),
             axes: self.axes,
-            scale_bar: self.scale_bar,
+            scale_bar: self.scale_bar || self.tells_scale(tells_time),
             sky_grid: self.grid || of_full_sky && !self.no_grid,
             wireframe: self.wireframe,
             labels: self.labels,
@@ -79,6 +81,14 @@ impl GuideArgs {
                 model: has(Part::Model),
             },
         })
+    }
+
+    /// Whether a caption has the scale of views from outside.
+    fn tells_scale(&self, tells_time: bool) -> bool {
+        match self.caption.as_slice() {
+            [] => tells_time,
+            parts => parts.contains(&Part::Scale),
+        }
     }
 
     /// Whether something is asked for that only pictures from outside have.

@@ -101,6 +101,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     let size = settings.side_by_side_size(scenes.len(), columns, steps);
     let size = size.context(match (scenes.len(), columns) {
         (1, 1) => "--sheet: all steps on one picture; choose fewer --steps or a smaller --size",
+        (1, _) => "--models: all models side by side; choose fewer, or a smaller --size",
         _ => "all speeds and models on one picture; choose fewer of them, or a smaller --size",
     })?;
     ensure!(

@@ -84,12 +84,13 @@ impl PictureSettings {
             columns: None,
             samples: NonZeroU32::new(options.samples).unwrap_or(NonZeroU32::MIN),
             background: options.background,
-            guides: Guides {
-                caption: match view {
-                    PictureView::Sheet { .. } => Caption::STANDARD,
-                    _ => Caption::default(),
+            guides: match view {
+                PictureView::Sheet { .. } => Guides {
+                    caption: Caption::STANDARD,
+                    scale_bar: true,
+                    ..Guides::default()
                 },
-                ..Guides::default()
+                _ => Guides::default(),
             },
             surface_options: SurfaceOptions {
                 precision: Precision::Double,

@@ -24,6 +24,31 @@ pub const BUILT_IN_SCENES: &[BuiltInScene] = &[
         json: include_str!("../../examples/scenes/cube.json"),
     },
     BuiltInScene {
+        name: "terrell",
+        summary: "a cube at 0.8 c, abeam: it looks turned by 53 degrees (Terrell 1959)",
+        json: include_str!("../../examples/scenes/terrell.json"),
+    },
+    BuiltInScene {
+        name: "stretched",
+        summary: "a sphere ahead at 0.95 c: stretched to six times its width, its outline a circle (Penrose 1959)",
+        json: include_str!("../../examples/scenes/stretched.json"),
+    },
+    BuiltInScene {
+        name: "plane",
+        summary: "a plane across the motion at 0.95 c: a sheet of a hyperboloid",
+        json: include_str!("../../examples/scenes/plane.json"),
+    },
+    BuiltInScene {
+        name: "speeds",
+        summary: "one cube at 0.1, 0.5, 0.9 and 0.99 c, all seen abeam at once",
+        json: include_str!("../../examples/scenes/speeds.json"),
+    },
+    BuiltInScene {
+        name: "rod",
+        summary: "two rods at 0.9 c: along the motion, long and then short; across it, bent",
+        json: include_str!("../../examples/scenes/rod.json"),
+    },
+    BuiltInScene {
         name: "lattice",
         summary: "into a lattice of bars at 0.9 c: straight bars become hyperbolas",
         json: include_str!("../../examples/scenes/lattice.json"),

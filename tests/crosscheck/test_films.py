@@ -28,7 +28,8 @@ def films(photosurface, tmp_path_factory):
     os.environ["PATH"] = f"{folder / 'bin'}:{path}"
     try:
         # An odd size: the last row and column of an MP4 are there twice.
-        common = ["render", folder / "scene.json", "--size", "121x81", "--samples", "2", f"--steps=-2..2/{FRAMES}"]
+        common = ["render", folder / "scene.json", "--size", "121x81", "--samples", "2", "--caption", "none"]
+        common.append(f"--steps=-2..2/{FRAMES}")
         photosurface(*common, "-o", folder / "frame.png")
         for kind in ["gif", "png", "webp", "mp4"]:
             photosurface(*common, "--fps", RATE, "--film", folder / f"film.{kind}")

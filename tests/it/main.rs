@@ -17,6 +17,7 @@ mod physics {
     mod accuracy;
     mod hard_cases;
     mod known_answers;
+    mod lessons;
     mod lorentz;
     mod moments;
     mod moving_objects;
@@ -70,6 +71,7 @@ mod export {
 
 mod render {
     mod films;
+    mod gallery;
     mod golden;
     mod lamps;
     mod one_call;

@@ -41,9 +41,11 @@ def test_the_outliner_shows_the_steps(flyby):
     assert sorted(objects) == ["observer", *(f"sphere_step{step:03}" for step in range(7))]
     for name, found in objects.items():
         assert found.data.name == name
-        assert found.parent is None
-    # A file of this kind is meshes and nothing else.
-    assert len(blender.bpy.data.objects) == len(objects)
+        # All of a step is one thing to hide or to move.
+        parent = None if name == "observer" else name.removeprefix("sphere_")
+        assert (found.parent and found.parent.name) == parent
+    # A file of this kind is meshes and their steps, nothing else.
+    assert len(blender.bpy.data.objects) == len(objects) + 7
 
 
 def test_meshes_are_those_of_the_file(paths):

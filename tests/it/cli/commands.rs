@@ -1,5 +1,7 @@
 //! The binary as users run it: exit status, clean stdout, every flag reaches its parameter, errors that help.
 
+use std::path::Path;
+
 use crate::common::command::{BALL, SQUARE, Workplace, glb_json, node_names};
 use crate::common::glb::Glb;
 use serde_json::Value;
@@ -30,7 +32,7 @@ fn every_built_in_scene_exports() {
         .lines()
         .filter_map(|line| line.split_whitespace().next())
         .collect();
-    let expected = "sphere, cube, lattice, street, night, snapshot, flight, takeoff, turn, orbit, models, stars";
+    let expected = "sphere, cube, terrell, stretched, plane, speeds, rod, lattice, street, night, snapshot, flight, takeoff, turn, orbit, models, stars";
     assert_eq!(names.join(", "), expected);
     for name in names {
         workplace
@@ -63,8 +65,41 @@ fn the_readmes_commands_work() {
         "thrust.json",
         r#"[{ "proper_time": 6, "acceleration": [0, 0, -0.5] }]"#,
     );
-    let readme = include_str!("../../../README.md");
-    let blocks = readme
+    let count = run_commands(&workplace, include_str!("../../../README.md"));
+    assert!(count >= 5, "only {count} commands found in the README");
+}
+
+#[test]
+fn the_commands_of_lessons_work() {
+    let lessons = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/lessons");
+    let index = std::fs::read_to_string(lessons.join("README.md")).expect("an index");
+    let workplace = Workplace::new();
+    let mut count = 0;
+    for page in std::fs::read_dir(&lessons)
+        .expect("a folder")
+        .map(|page| page.expect("a page"))
+    {
+        let name = page.file_name().into_string().expect("a name");
+        let text = std::fs::read_to_string(page.path()).expect("text");
+        assert!(
+            name == "README.md" || index.contains(&format!("({name})")),
+            "{name}"
+        );
+        count += run_commands(&workplace, &text);
+        for picture in text.split("](../gallery/").skip(1) {
+            let picture = picture.split(')').next().unwrap_or_default();
+            assert!(
+                lessons.join("../gallery").join(picture).exists(),
+                "{name}: {picture}"
+            );
+        }
+    }
+    assert!(count >= 14, "only {count} commands found in lessons");
+}
+
+/// Runs the commands in blocks of shell in a text; returns how many there are.
+fn run_commands(workplace: &Workplace, text: &str) -> usize {
+    let blocks = text
         .split("```sh\n")
         .skip(1)
         .map(|rest| rest.split("```").next().unwrap_or_default());
@@ -77,7 +112,7 @@ fn the_readmes_commands_work() {
         assert!(!run.stderr.contains("written by photosurface"), "{run}");
         count += 1;
     }
-    assert!(count >= 5, "only {count} commands found in the README");
+    count
 }
 
 #[test]
