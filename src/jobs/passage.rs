@@ -18,7 +18,7 @@ const MOST_GAMMA: f64 = 1e9;
 
 /// Angle between the direction of motion and the direction in which an object is seen at the first moment of its passage, in
 /// radians; at the last one it is seen as close to the opposite direction.
-const FIRST_SEEN: f64 = PI / 9.0;
+const FIRST_SEEN: f64 = PI / 6.0;
 
 /// Reasons why there is no passage.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -80,7 +80,7 @@ pub fn fly_by(scene: Scene, model: &Model) -> Result<Scene, PlaceError> {
 
 /// `count` proper times of the observer from the approach of the objects, over their closest pass, to their departure.
 ///
-/// An observer who coasts sees the middle of an object first at 20 degrees from the direction of motion, last at 160
+/// An observer who coasts sees the middle of an object first at 30 degrees from the direction of motion, last at 150
 /// degrees, and between at evenly spaced angles. Where several objects pass, the first moment is that of the first one, the
 /// last moment that of the last one. An observer who flies has moments at evenly spaced proper times of its flight.
 ///
@@ -214,7 +214,7 @@ mod tests {
             let steps = passage(&scene, &models, 7).unwrap();
             let scene = scene.with_steps(steps).unwrap();
             for (number, angle) in angles(&scene).into_iter().enumerate() {
-                let expected = 20.0 + 140.0 / 6.0 * number as f64;
+                let expected = 30.0 + 20.0 * number as f64;
                 assert!(
                     (angle.to_degrees() - expected).abs() < 1e-6,
                     "{beta} {number}: {angle}"

@@ -302,6 +302,11 @@ impl<'a> Table<'a> {
             false if label.is_some() && is_sheet => vec![],
             false => caption.numbers(placed, cell.steps.clone()),
         };
+        // The label of a scene may be one of its numbers.
+        let numbers = numbers
+            .into_iter()
+            .filter(|number| Some(number) != label.as_ref());
+        let numbers: Vec<_> = numbers.collect();
         let time = caption.time(placed, cell.steps.clone());
         let numbers = label.into_iter().chain(numbers).chain(time);
         let is_shown = is_first && !is_sheet;
