@@ -1,6 +1,7 @@
 //! Flags that say what a picture shows and from where.
 
 use std::num::{NonZeroU32, NonZeroUsize};
+use std::ops::Range;
 
 use anyhow::{Context, anyhow, bail, ensure};
 use photosurface::jobs::{
@@ -66,10 +67,14 @@ pub(super) struct CameraArgs {
     /// Show the photosurfaces of all steps in one picture (--view outside)
     #[arg(long, conflicts_with = "sheet")]
     pub(super) together: bool,
+    /// Draw only the pictures, or frames of a film, from A up to B, B not included, counted from 0: names, numbers and cameras
+    /// are those of the whole
+    #[arg(long, value_name = "A..B", value_parser = part, conflicts_with_all = ["sheet", "together"])]
+    only: Option<Range<usize>>,
     /// Antialias with N x N rays per pixel, N from 1 to 16
     #[arg(long, value_name = "N", default_value = "3", value_parser = samples, allow_hyphen_values = true)]
     pub(super) samples: NonZeroU32,
-    /// Background colour, #rrggbb [default: #14171c; black where a scene has lamps, black bodies or the searchlight effect]
+    /// Background colour, #rrggbb, white or black [default: #14171c; black where a scene has lamps, black bodies or the searchlight effect]
     #[arg(long, value_name = "COLOR", value_parser = color)]
     background: Option<Color>,
 }
@@ -191,6 +196,7 @@ impl CameraArgs {
             },
         };
         settings.columns = self.columns;
+        settings.only.clone_from(&self.only);
         settings.samples = self.samples;
         Ok(settings)
     }
@@ -198,6 +204,11 @@ impl CameraArgs {
     /// Whether the projection is left to the program.
     pub(super) fn chooses_projection(&self) -> bool {
         self.projection.is_none() && !self.full_sky
+    }
+
+    /// Whether the observer's camera follows the objects.
+    pub(super) fn tracks(&self) -> bool {
+        self.track || self.sheet && !self.hold
     }
 
     /// Whether the pictures are of the whole sky.
@@ -272,6 +283,17 @@ pub(super) fn size(text: &str) -> anyhow::Result<PictureSize> {
     Ok(PictureSize::new(number(width)?, number(height)?)?)
 }
 
+/// `A..B`
+fn part(text: &str) -> anyhow::Result<Range<usize>> {
+    let whole = |text: &str| text.trim().parse::<usize>().ok();
+    let ends = text.split_once("..");
+    let range = ends.and_then(|(from, to)| Some(whole(from)?..whole(to)?));
+    let range = range.filter(|range| !range.is_empty());
+    range.with_context(|| {
+        format!("\"{text}\" is no part, expected A..B with A below B, like 10..20 for the numbers 10 to 19")
+    })
+}
+
 /// Rays a pixel along each side.
 pub(super) fn samples(text: &str) -> anyhow::Result<NonZeroU32> {
     let number = text.trim().parse().ok();
@@ -279,9 +301,13 @@ pub(super) fn samples(text: &str) -> anyhow::Result<NonZeroU32> {
     number.with_context(|| format!("\"{text}\" is not a number of rays (expected 1 to 16)"))
 }
 
-/// `#rrggbb`
+/// `#rrggbb`, `white` or `black`
 fn color(text: &str) -> anyhow::Result<Color> {
-    Ok(Color::try_from(text.to_owned())?)
+    Ok(match text {
+        "white" => Color([255; 3]),
+        "black" => Color([0; 3]),
+        _ => Color::try_from(text.to_owned())?,
+    })
 }
 
 #[cfg(test)]
@@ -296,6 +322,7 @@ mod tests {
             assert!(size(wrong).is_err(), "{wrong}");
         }
         assert_eq!(color("#ff0080").unwrap(), Color([255, 0, 128]));
+        assert_eq!(color("white").unwrap(), Color([255; 3]));
         assert!(color("red").is_err());
     }
 }

@@ -116,6 +116,11 @@ impl Film<'_> {
         Ok(scene.with_steps(steps)?)
     }
 
+    /// How long so many frames are shown.
+    pub(super) fn length(&self, frames: usize) -> String {
+        format!("{:.1} s", frames as f64 / self.rate.get())
+    }
+
     /// Makes the film of the pictures that `draw` hands over one by one.
     pub(super) fn record(
         &self,

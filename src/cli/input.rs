@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow, bail, ensure};
 use photosurface::jobs::{MAX_SCENE_BYTES, fly_by, passing_observer, scene_from_bytes};
 use photosurface::material::Normals;
-use photosurface::pipeline::Around;
+use photosurface::pipeline::{Around, Blurred};
 use photosurface::read::{
     Access, EXPECTED_MODEL, Findings, ReadError, is_model_extension, is_model_of_one_file,
     read_whole, with_normals,
@@ -223,6 +223,21 @@ pub(super) fn tell_of_inside(placed: &PlacedScene, verbosity: Verbosity) {
         let proper_time = placed.scene().steps()[step];
         verbosity.note(format_args!(
             "the observer is inside of \"{object}\" at step {step} (proper time {proper_time}), and sees it from within"
+        ));
+    }
+}
+
+/// Tells of the objects whose surfaces rays cannot show, as the observer's place has too few digits.
+pub(super) fn tell_of_blurred(placed: &PlacedScene, verbosity: Verbosity) {
+    for Blurred {
+        object,
+        step,
+        error,
+    } in placed.blurred()
+    {
+        verbosity.note(format_args!(
+            "at step {step} the observer's place relative to \"{object}\" has an error of about {error:.0e} of its size, since the \
+             way there takes all digits of a number: its outline is right, its pattern is not; choose a lower speed or earlier steps"
         ));
     }
 }

@@ -12,7 +12,7 @@ use photosurface::render::{Picture, Projection};
 use photosurface::spacetime::ViewModel;
 use photosurface::tessellate::Precision;
 use photosurface::write::write_whole;
-use photosurface::{DVec3, Observer, PictureView, PlacedScene, Scene};
+use photosurface::{Observer, PictureView, PlacedScene, Scene};
 
 use super::accuracy::AccuracyArgs;
 use super::args::{InputArgs, ObserverArgs, PASSAGE};
@@ -20,7 +20,7 @@ use super::camera::{CameraArgs, Method, View};
 use super::effects::{EffectArgs, tell_of_ramp};
 use super::film::{Film, FilmArgs};
 use super::guides::GuideArgs;
-use super::input::{Input, tell_of_inside, tell_of_missing};
+use super::input::{Input, tell_of_blurred, tell_of_inside, tell_of_missing};
 use super::messages::{Verbosity, counted, print};
 use super::models::ModelsArgs;
 use super::output::{Bar, check_destinations, extension, from_first_to_last, is_stdout};
@@ -105,20 +105,36 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
         _ => "all speeds and models on one picture; choose fewer of them, or a smaller --size",
     })?;
     ensure!(
-        film.is_some() || settings.picture_count(steps) == 1 || !is_stdout(&path),
+        film.is_some() || settings.drawn(steps).len() == 1 || !is_stdout(&path),
         "{steps} steps are as many pictures, they cannot all go to stdout; choose one with --steps"
     );
+    let drawn = settings.drawn(steps);
+    if let Some(only) = &settings.only {
+        ensure!(
+            only.end <= settings.picture_count(steps),
+            "--only is {}..{}, but there are {}",
+            only.start,
+            only.end,
+            counted(settings.picture_count(steps), "picture")
+        );
+    }
     let files = match &film {
         Some(film) => vec![film.path.to_owned()],
+        None if is_stdout(&path) => vec![path; settings.picture_count(steps)],
         None => settings.files(&path, steps),
     };
-    check_destinations(files.iter().cloned(), &input.files)?;
+    let made = match &film {
+        Some(_) => &files[..],
+        None => &files[drawn.clone()],
+    };
+    check_destinations(made.iter().cloned(), &input.files)?;
     let scene = &scenes[0].1;
     tell_of_ramp(scene, verbosity);
-    tell_of_inside(
-        &PlacedScene::new(scene.clone(), input.models.clone())?,
-        verbosity,
-    );
+    let first = PlacedScene::new(scene.clone(), input.models.clone())?;
+    tell_of_inside(&first, verbosity);
+    if method == Method::Rays {
+        tell_of_blurred(&first, verbosity);
+    }
     settings.background = camera.background(scene, settings.background);
     settings.surface_options = args.accuracy.wanted(Precision::Double);
     let fits_budget = camera.shows_meshes(method) && settings.surface_options.subdivide;
@@ -151,7 +167,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
         }
     };
     let rendered = match &film {
-        Some(film) => film.record(size, steps, draw),
+        Some(film) => film.record(size, drawn.len(), draw),
         None => draw(&mut |number, picture| write(&files[number], picture)),
     };
     let rendered = rendered.map_err(|error| match error.downcast::<RenderError>() {
@@ -160,18 +176,27 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     })?;
     progress.finish();
     tell_of_costs(&rendered.costs, verbosity);
-    let views = steps * columns * scenes.len();
+    let shown = if camera.sheet || camera.together {
+        steps
+    } else {
+        drawn.len()
+    };
+    let views = shown * columns * scenes.len();
     tell_of_frame(rendered.frame, camera, verbosity);
     tell_of_empty(&rendered.empty, views, camera, method, verbosity);
     tell_of_missing(&input.textures, &scenes[0].1, verbosity);
     if !is_stdout(&files[0]) {
         let pictures = match &film {
-            Some(_) => counted(steps, "frame"),
-            None => counted(files.len(), "picture"),
+            Some(film) => format!(
+                "{}, {}",
+                counted(drawn.len(), "frame"),
+                film.length(drawn.len())
+            ),
+            None => counted(made.len(), "picture"),
         };
         verbosity.result(format_args!(
             "{}: {pictures}{}",
-            from_first_to_last(&files),
+            from_first_to_last(made),
             legend(args)
         ));
     }
@@ -190,6 +215,11 @@ fn scenes(
     let observer = input.scene.observer();
     let mut scenes = vec![];
     for (label, velocity) in args.observer.speeds(observer)? {
+        let label = match observer.flight.is_empty() {
+            true => label,
+            // Later the speed is another.
+            false => format!("{label} at first"),
+        };
         let observer = Observer {
             velocity,
             ..observer.clone()
@@ -201,15 +231,18 @@ fn scenes(
         scenes.push((String::new(), input.scene.clone()));
     }
     let shows_time = args.camera.sheet || film.is_some();
+    let is_alone = scenes.len() == 1;
     let passes = input.is_mesh && shows_time && args.observer.flies_by();
     for (_, scene) in &mut scenes {
         let mut changed = args.accuracy.scene(scene.clone());
         if passes {
             let steps = match passage(&changed, &input.models, PASSAGE) {
                 Ok(steps) => steps,
-                // As many pictures as at other speeds.
-                Err(PassageError::AtRest) => changed.steps().repeat(PASSAGE),
-                Err(error) => return Err(error.into()),
+                // One picture, or as many as at other speeds.
+                Err(PassageError::AtRest) if film.is_none() => {
+                    changed.steps().repeat(if is_alone { 1 } else { PASSAGE })
+                }
+                Err(error) => return Err(error).context("--film"),
             };
             changed = changed.with_steps(steps)?;
         }
@@ -266,7 +299,8 @@ fn tell_of_frame(frame: Option<FrameFacts>, camera: &CameraArgs, verbosity: Verb
         Projection::Stereographic { .. } if camera.chooses_projection() => {
             verbosity.note(format_args!(
                 "everything together is {wide:.0} degrees wide, so the picture is stereographic: circles stay circles, \
-                 straight lines bend; --track follows the objects, --projection perspective keeps lines straight"
+                 straight lines bend; {}--projection perspective keeps lines straight",
+                if camera.tracks() { "" } else { "--track follows the objects, " }
             ));
         }
         _ => {}
@@ -295,7 +329,11 @@ fn tell_of_empty(
     let Some(first) = empty.first() else {
         return;
     };
-    let DVec3 { x, y, z } = first.look;
+    // Three places, a zero without a sign.
+    let [x, y, z] = first
+        .look
+        .to_array()
+        .map(|part| (1000.0 * part).round() / 1000.0 + 0.0);
     let which = match views {
         1 => "nothing is to be seen in the picture".to_owned(),
         _ => format!(
@@ -319,7 +357,7 @@ fn tell_of_empty(
         Method::Rays => "",
     };
     verbosity.note(format_args!(
-        "{which}: every object is in another direction, smaller than a pixel{coarse}; try {advice}"
+        "{which}: every object is in another direction, or smaller than a pixel{coarse}; try {advice}"
     ));
 }
 

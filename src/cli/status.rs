@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use photosurface::Cancelled;
 use photosurface::jobs::{ExportError, RenderError};
-use photosurface::write::WriteError;
+use photosurface::write::{WriteError, writes_are_abandoned};
 
 use super::messages;
 
@@ -36,7 +36,7 @@ pub(super) fn ended(done: anyhow::Result<Status>) -> ExitCode {
         Ok(Status::NotCertified) => ExitCode::from(NOT_CERTIFIED),
         Err(error) if is_broken_pipe(&error) => ExitCode::from(BROKEN_PIPE),
         // Whoever interrupted the program need not be told.
-        Err(error) if is_cancelled(&error) => ExitCode::from(INTERRUPTED),
+        Err(error) if is_cancelled(&error) || writes_are_abandoned() => ExitCode::from(INTERRUPTED),
         Err(error) => {
             messages::error(&error);
             ExitCode::from(ERROR)

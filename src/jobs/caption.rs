@@ -12,7 +12,7 @@ use crate::shape::Color;
 use crate::spacetime::{Velocity, ViewModel};
 
 /// Height of capitals as a fraction of the picture's height, and the least in pixels.
-const LETTERS: f64 = 1.0 / 30.0;
+const LETTERS: f64 = 1.0 / 24.0;
 const LEAST_PX: f64 = 9.0;
 
 /// Letters above a sheet are so much larger than those on its views.

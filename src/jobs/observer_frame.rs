@@ -19,8 +19,8 @@ const MIN_FOV_DEG: f64 = 1e-6;
 /// How often the middle of what is seen is found anew, in the projection about the middle before.
 const ROUNDS: usize = 6;
 
-/// A camera that holds its direction and looks closer to straight up or down than this, in radians, has no horizon: the
-/// passage goes across its picture.
+/// A camera that looks closer to straight up or down than this, in radians, has no horizon: the motion goes across its
+/// picture.
 const NEAR_VERTICAL: f64 = PI / 6.0;
 
 /// The cameras with which the observer takes pictures of all steps.
@@ -50,8 +50,8 @@ pub struct FrameFacts {
 enum Direction {
     /// One direction at all steps, with a direction that is up.
     Held { look: DVec3, up: DVec3 },
-    /// The middle of what is seen at each step.
-    Tracked(Flat),
+    /// The middle of what is seen at each step, with a direction that is up.
+    Tracked { flat: Flat, up: DVec3 },
 }
 
 /// A projection onto a plane, without its field of view.
@@ -61,11 +61,10 @@ enum Flat {
     Stereographic,
 }
 
-/// A direction, what is up in the picture, and half the height in the plane that shows everything.
+/// A direction, and half the height in the plane that shows everything.
 #[derive(Clone, Copy, Debug)]
 struct Fit {
     look: DVec3,
-    up: DVec3,
     half_height: f64,
 }
 
@@ -96,11 +95,11 @@ impl CameraSettings {
 
 impl ObserverFrame {
     /// The frame that settings without a usual aim ask for. `skies` are the directions that pictures have to show, as
-    /// unit vectors in the observer's axes, a list for each step; `heading` is the direction of motion.
+    /// unit vectors in the observer's axes, a list for each step; `heading` is the direction of motion, if there is one.
     pub(super) fn new(
         settings: &CameraSettings,
         skies: &[Vec<DVec3>],
-        heading: DVec3,
+        heading: Option<DVec3>,
     ) -> Result<Self, FramingError> {
         let frame = |projection, aim, is_cut| Self {
             size: settings.size,
@@ -118,8 +117,11 @@ impl ObserverFrame {
         if settings.projection == PictureProjection::FullSky {
             let aim = match (aimed, settings.follow) {
                 (Some(look), _) => held(look, DVec3::Y),
-                (None, Follow::Track) => Direction::Tracked(Flat::Perspective),
-                (None, _) => held(heading, DVec3::Y),
+                (None, Follow::Track) => Direction::Tracked {
+                    flat: Flat::Perspective,
+                    up: DVec3::Y,
+                },
+                (None, _) => held(heading.unwrap_or(DVec3::NEG_Z), DVec3::Y),
             };
             return frame(Projection::FullSky, aim, false).checked(settings);
         }
@@ -134,13 +136,14 @@ impl ObserverFrame {
             return frame(projection, held(look, DVec3::Y), false).checked(settings);
         }
         let aspect = aspect(settings.size);
+        let up = up_of_passage(middle_of_sky(&all), heading);
         for &(flat, limit_deg) in candidates(asked) {
             let fits: Option<Vec<Fit>> = match settings.follow {
                 Follow::Track => {
                     let skies = skies.iter();
-                    skies.map(|sky| fit(flat, sky, aspect, false)).collect()
+                    skies.map(|sky| fit(flat, sky, aspect, up)).collect()
                 }
-                _ => fit(flat, &all, aspect, skies.len() > 1).map(|fit| vec![fit]),
+                _ => fit(flat, &all, aspect, up).map(|fit| vec![fit]),
             };
             let Some(fits) = fits else {
                 continue;
@@ -155,14 +158,14 @@ impl ObserverFrame {
                 continue;
             }
             let aim = match (settings.follow, fits.first()) {
-                (Follow::Track, _) | (_, None) => Direction::Tracked(flat),
-                (_, Some(fit)) => held(fit.look, fit.up),
+                (Follow::Track, _) | (_, None) => Direction::Tracked { flat, up },
+                (_, Some(fit)) => held(fit.look, up),
             };
             return frame(flat.projection(fov_deg), aim, false).checked(settings);
         }
         let is_cut = settings.field_of_view == FieldOfView::Fitting;
         let look = match is_cut {
-            true => heading,
+            true => heading.unwrap_or(DVec3::NEG_Z),
             false => middle_of_sky(&all),
         };
         let projection = first.projection(settings.fov_deg());
@@ -184,9 +187,9 @@ impl ObserverFrame {
     pub(super) fn camera(&self, sky: &[DVec3]) -> Result<Camera, FramingError> {
         let (look, up) = match self.aim {
             Direction::Held { look, up } => (look, up),
-            Direction::Tracked(flat) => match fit(flat, sky, aspect(self.size), false) {
-                Some(fit) => (fit.look, fit.up),
-                None => (middle_of_sky(sky), DVec3::Y),
+            Direction::Tracked { flat, up } => match fit(flat, sky, aspect(self.size), up) {
+                Some(fit) => (fit.look, up),
+                None => (middle_of_sky(sky), up),
             },
         };
         Ok(Camera::with_up(self.size, self.projection, look, up)?)
@@ -216,11 +219,9 @@ impl ObserverFrame {
     }
 }
 
-/// The direction in which the observer moves at the first step, in its own axes; -z for one at rest in the scene.
-pub(super) fn heading(placed: &PlacedScene) -> DVec3 {
-    let moment = placed.scene().moment(0);
-    let motion = moment.map(|moment| moment.heading_own());
-    motion.flatten().unwrap_or(DVec3::NEG_Z)
+/// The direction in which the observer moves at the first step, in its own axes, unless it is at rest in the scene.
+pub(super) fn heading(placed: &PlacedScene) -> Option<DVec3> {
+    placed.scene().moment(0)?.heading_own()
 }
 
 /// Projections in the order in which they are tried, each with the largest angle, in degrees, that a picture may show.
@@ -281,23 +282,15 @@ impl Flat {
 }
 
 /// The direction in which a picture has to be least high to show everything; `None` if a picture cannot.
-fn fit(flat: Flat, sky: &[DVec3], aspect: f64, may_roll: bool) -> Option<Fit> {
+fn fit(flat: Flat, sky: &[DVec3], aspect: f64, up: DVec3) -> Option<Fit> {
     let mut look = middle_of_sky(sky);
     let mut best: Option<Fit> = None;
     for _ in 0..ROUNDS {
-        let up = match may_roll {
-            true => up_of_passage(look, sky),
-            false => DVec3::Y,
-        };
         let axes = axes(look, up);
         let (low, high) = in_plane(flat, axes, sky)?;
         let half_height = half_height((low, high), aspect);
         if best.is_none_or(|best| half_height < best.half_height) {
-            best = Some(Fit {
-                look,
-                up,
-                half_height,
-            });
+            best = Some(Fit { look, half_height });
         }
         let next = axes * flat.direction((low + high) / 2.0);
         look = next.try_normalize()?;
@@ -332,31 +325,22 @@ fn axes(look: DVec3, up: DVec3) -> DMat3 {
     DMat3::from_cols(right, right.cross(look), look)
 }
 
-/// The direction that is up for a camera that holds its direction.
-fn up_of_passage(look: DVec3, sky: &[DVec3]) -> DVec3 {
-    if look.y.abs() < NEAR_VERTICAL.cos() {
-        return DVec3::Y;
-    }
-    // The longer axis of the directions across the picture.
-    let (right, up) = look.any_orthonormal_pair();
-    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-    let count = sky.len().max(1) as f64;
-    let middle = sky.iter().sum::<DVec3>() / count;
-    for direction in sky {
-        let off = *direction - middle;
-        let (x, y) = (off.dot(right), off.dot(up));
-        xx += x * x;
-        xy += x * y;
-        yy += y * y;
-    }
-    let (sin, cos) = (0.5 * (2.0 * xy).atan2(xx - yy)).sin_cos();
-    let along = right * cos + up * sin;
-    let across = along.cross(look);
+/// The direction that is up in pictures about a middle: y, but where that is almost straight up or down, the direction for
+/// which the motion goes across the picture.
+fn up_of_passage(middle: DVec3, heading: Option<DVec3>) -> DVec3 {
+    let is_vertical = middle.y.abs() > NEAR_VERTICAL.cos();
+    let across = heading.filter(|_| is_vertical);
+    let up = across.and_then(|heading| heading.cross(middle).try_normalize());
     // As a camera that looks straight up or down has it.
-    let usual = if look.y > 0.0 { DVec3::Z } else { DVec3::NEG_Z };
-    match across.dot(usual) < 0.0 {
-        true => -across,
-        false => across,
+    let usual = if middle.y > 0.0 {
+        DVec3::Z
+    } else {
+        DVec3::NEG_Z
+    };
+    match up {
+        None => DVec3::Y,
+        Some(up) if up.dot(usual) < 0.0 => -up,
+        Some(up) => up,
     }
 }
 
@@ -413,7 +397,7 @@ mod tests {
                     let frame = ObserverFrame::new(
                         &settings(width, height),
                         std::slice::from_ref(&sky),
-                        DVec3::X,
+                        Some(DVec3::X),
                     );
                     let frame = frame.unwrap();
                     let facts = frame.facts();
@@ -455,7 +439,7 @@ mod tests {
         ];
         let skies = skies.map(|middle| ring(middle, 5.0));
         let hold = settings(640, 360);
-        let held = ObserverFrame::new(&hold, &skies, DVec3::X).unwrap();
+        let held = ObserverFrame::new(&hold, &skies, Some(DVec3::X)).unwrap();
         let cameras = skies.each_ref().map(|sky| held.camera(sky).unwrap());
         assert!(cameras.iter().all(|camera| camera == &cameras[0]));
         assert!(skies.iter().flatten().all(|&at| shows(&cameras[0], at)));
@@ -465,7 +449,7 @@ mod tests {
             follow: Follow::Track,
             ..hold
         };
-        let tracked = ObserverFrame::new(&track, &skies, DVec3::X).unwrap();
+        let tracked = ObserverFrame::new(&track, &skies, Some(DVec3::X)).unwrap();
         for sky in &skies {
             let camera = tracked.camera(sky).unwrap();
             let middle_of_ball = sky.iter().sum::<DVec3>().normalize();
@@ -479,7 +463,7 @@ mod tests {
     #[test]
     fn a_passage_overhead_goes_across_the_picture() {
         let skies = [-1.0, 0.0, 1.0].map(|x| ring(DVec3::new(x, 2.0, 0.0), 3.0));
-        let frame = ObserverFrame::new(&settings(640, 360), &skies, DVec3::NEG_X).unwrap();
+        let frame = ObserverFrame::new(&settings(640, 360), &skies, Some(DVec3::NEG_X)).unwrap();
         let camera = frame.camera(&skies[0]).unwrap();
         let places = [-1.0, 1.0].map(|x| camera.place(DVec3::new(x, 2.0, 0.0)).unwrap());
         let across = places[1] - places[0];
@@ -492,7 +476,7 @@ mod tests {
     #[test]
     fn what_is_all_around_is_cut_along_the_direction_of_motion() {
         let skies = [DVec3::AXES.to_vec(), DVec3::AXES.map(|axis| -axis).to_vec()];
-        let frame = ObserverFrame::new(&settings(640, 360), &skies, DVec3::X).unwrap();
+        let frame = ObserverFrame::new(&settings(640, 360), &skies, Some(DVec3::X)).unwrap();
         let facts = frame.facts();
         assert!(facts.is_cut && vertical_deg(facts.projection) == OBSERVER_FOV_DEG);
         let ahead = frame
@@ -505,7 +489,7 @@ mod tests {
             ..settings(640, 320)
         };
         assert!(
-            !ObserverFrame::new(&sky, &skies, DVec3::X)
+            !ObserverFrame::new(&sky, &skies, Some(DVec3::X))
                 .unwrap()
                 .facts()
                 .is_cut
@@ -526,7 +510,7 @@ mod tests {
                 projection,
                 ..settings(16, 9)
             };
-            let error = ObserverFrame::new(&settings, &sky, DVec3::X).unwrap_err();
+            let error = ObserverFrame::new(&settings, &sky, Some(DVec3::X)).unwrap_err();
             let field = matches!(error, FramingError::Camera(CameraError::FieldOfView { .. }));
             assert!(field, "{bad}: {error}");
         }
@@ -540,12 +524,12 @@ mod tests {
                 ..settings(16, 9)
             };
             assert!(
-                ObserverFrame::new(&settings, &sky, DVec3::X).is_err(),
+                ObserverFrame::new(&settings, &sky, Some(DVec3::X)).is_err(),
                 "{aim:?}"
             );
         }
         // Nothing to be seen is no error.
-        ObserverFrame::new(&settings(16, 9), &[vec![]], DVec3::X).unwrap();
-        ObserverFrame::new(&settings(16, 9), &[], DVec3::X).unwrap();
+        ObserverFrame::new(&settings(16, 9), &[vec![]], Some(DVec3::X)).unwrap();
+        ObserverFrame::new(&settings(16, 9), &[], Some(DVec3::X)).unwrap();
     }
 }

@@ -1,6 +1,7 @@
 //! Which pictures of a scene are drawn, from where and how.
 
 use std::num::{NonZeroU32, NonZeroUsize};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
@@ -57,6 +58,8 @@ pub struct PictureSettings {
     /// How many steps a sheet of one scene, or of each of several, has beside each other; with `None` at most eight, in rows
     /// of about equal length.
     pub columns: Option<NonZeroUsize>,
+    /// Which of several pictures are drawn, counted from 0, as they are among all: with `None` all of them.
+    pub only: Option<Range<usize>>,
     /// Number of rays along each side of a pixel: N gives N x N rays per pixel. More than 1024 count as 1024.
     pub samples: NonZeroU32,
     /// The colour where nothing is seen.
@@ -82,6 +85,7 @@ impl PictureSettings {
             view,
             camera: CameraSettings::new(size),
             columns: None,
+            only: None,
             samples: NonZeroU32::new(options.samples).unwrap_or(NonZeroU32::MIN),
             background: options.background,
             guides: match view {
@@ -104,6 +108,15 @@ impl PictureSettings {
         match self.view {
             PictureView::Sheet { .. } | PictureView::Outside { together: true, .. } => 1,
             _ => steps,
+        }
+    }
+
+    /// The numbers of the pictures that are drawn of a scene with `steps` steps, counted from 0.
+    pub fn drawn(&self, steps: usize) -> Range<usize> {
+        let count = self.picture_count(steps);
+        match &self.only {
+            Some(only) => only.start.min(count)..only.end.min(count),
+            None => 0..count,
         }
     }
 

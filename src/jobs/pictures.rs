@@ -148,7 +148,8 @@ impl<'a> Table<'a> {
         let settings = views[0].settings;
         let steps = views[0].steps().end;
         let pages = settings.pages(shape, steps);
-        let cells = pages.iter().flatten().map(Vec::len).sum::<usize>();
+        let drawn = pages.get(settings.drawn(steps)).unwrap_or_default();
+        let cells = drawn.iter().flatten().map(Vec::len).sum::<usize>();
         let rows = settings.camera.size.height() as usize * cells * settings.views_of_a_cell();
         views[0].progress.begin(rows);
         frame_observer(&mut views)?;
@@ -200,9 +201,12 @@ impl<'a> Table<'a> {
         mut finished: impl FnMut(usize, &Picture) -> Result<(), E>,
     ) -> Result<Rendered, E> {
         let mut before = 0;
+        let drawn = self.settings.drawn(self.steps);
         for (number, page) in std::mem::take(&mut self.pages).iter().enumerate() {
-            let picture = self.picture(page, before)?;
-            finished(number, &picture)?;
+            if drawn.contains(&number) {
+                let picture = self.picture(page, before)?;
+                finished(number, &picture)?;
+            }
             before += page.iter().map(Vec::len).sum::<usize>();
         }
         let each = self.views.into_iter().map(|views| views.rendered);
@@ -299,14 +303,9 @@ impl<'a> Table<'a> {
         let numbers = match is_sheet && self.common_numbers().is_some() {
             true => vec![],
             // The label says the speed, or the model.
-            false if label.is_some() && is_sheet => vec![],
+            false if label.is_some() => vec![],
             false => caption.numbers(placed, cell.steps.clone()),
         };
-        // The label of a scene may be one of its numbers.
-        let numbers = numbers
-            .into_iter()
-            .filter(|number| Some(number) != label.as_ref());
-        let numbers: Vec<_> = numbers.collect();
         let time = caption.time(placed, cell.steps.clone());
         let numbers = label.into_iter().chain(numbers).chain(time);
         let is_shown = is_first && !is_sheet;
@@ -367,7 +366,9 @@ pub fn render_to_files(
     progress: &dyn Progress,
 ) -> Result<Rendered, RenderError> {
     let files = settings.files(path, placed.scene().steps().len());
-    check_outputs(files.iter().cloned(), &[])?;
+    let drawn = settings.drawn(placed.scene().steps().len());
+    let drawn = files.get(drawn).unwrap_or_default();
+    check_outputs(drawn.iter().cloned(), &[])?;
     render(placed, textures, settings, progress, |number, picture| {
         write_whole(&files[number], |writer| Ok(picture.write_png(writer)?))?;
         Ok(())

@@ -1,5 +1,6 @@
 //! The pipeline: it makes the photosurface of every part at every step from a scene and its models.
 
+mod blurred;
 mod bounds;
 mod budget;
 mod certifying;
@@ -23,6 +24,7 @@ mod surface_options;
 mod together;
 mod vertex_data;
 
+pub use blurred::Blurred;
 pub use bounds::Bounds;
 pub use budget::Prediction;
 pub use error::PlacedSceneError;

@@ -21,6 +21,17 @@ pub(super) fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> O
     best.map(|(_, candidate)| candidate)
 }
 
+/// Other words for shapes.
+const SYNONYMS: [(&str, &str); 7] = [
+    ("ball", "sphere"),
+    ("cube", "box"),
+    ("cuboid", "box"),
+    ("donut", "torus"),
+    ("plane", "grid"),
+    ("ring", "torus"),
+    ("stick", "rod"),
+];
+
 /// A message about an unknown word, which stands in backticks before the known ones, with the one that was meant.
 pub(super) fn with_nearest(message: String) -> String {
     let is_unknown = ["unknown key", "unknown variant", "unknown shape"]
@@ -36,6 +47,10 @@ pub(super) fn with_nearest(message: String) -> String {
     if word.len() > 60 {
         return message;
     }
+    let word = SYNONYMS
+        .iter()
+        .find(|(tried, _)| *tried == word)
+        .map_or(word, |(_, meant)| meant);
     let expected = expected.strip_prefix("one of ").unwrap_or(expected);
     let separators = |c: char| matches!(c, ',' | '`' | ' ' | '"');
     let known = expected

@@ -216,6 +216,11 @@ pub fn abandon_writes() {
     }
 }
 
+/// Whether all writing has been abandoned: errors after that are those of a program that was told to end.
+pub fn writes_are_abandoned() -> bool {
+    Writes::lock().are_abandoned
+}
+
 /// A folder for files that nobody keeps, among the system's temporary files; [`abandon_writes`] knows of it.
 pub(crate) struct ScratchFolder(TempDir);
 

@@ -23,7 +23,9 @@ pub use error::WriteError;
 pub(crate) use export::FRAMES_PER_SECOND;
 pub use export::{Export, Playback};
 pub(crate) use file::ScratchFolder;
-pub use file::{Target, abandon_writes, destination, write_whole, write_whole_target};
+pub use file::{
+    Target, abandon_writes, destination, write_whole, write_whole_target, writes_are_abandoned,
+};
 pub use film::{
     FilmError, FilmFormat, FilmFormatError, FilmSettings, FilmWriter, FrameRate, FrameRateError,
 };

@@ -53,6 +53,59 @@ fn a_picture_for_each_step_or_one_for_stdout() {
         .error(&["3 steps", "--steps"]);
 }
 
+/// A part of several pictures, or of a film, has the names, numbers and cameras of the whole.
+#[test]
+fn a_part_of_the_pictures_is_that_of_the_whole() {
+    let workplace = Workplace::with_ball();
+    let line = "render ball.json --size 32x18 --samples 1 --steps=-2..2/5 --beta 0.6";
+    for view in ["", "--view outside --axes", "--beta 0.6 --models seen,rest"] {
+        let line = match view.starts_with("--beta") {
+            true => line.replace("--beta 0.6", view),
+            false => format!("{line} {view}"),
+        };
+        workplace.run(&format!("{line} -o whole.png")).success();
+        let run = workplace
+            .run(&format!("{line} --only 2..4 -o part.png"))
+            .success();
+        assert!(
+            run.stderr
+                .contains("part_step002.png to part_step003.png: 2 pictures"),
+            "{run}"
+        );
+        for number in 0..5 {
+            let [whole, part] = ["whole", "part"].map(|name| format!("{name}_step00{number}.png"));
+            match (2..4).contains(&number) {
+                true => assert_eq!(workplace.read(&part), workplace.read(&whole), "{view}"),
+                false => assert!(!workplace.files().contains(&part), "{view}"),
+            }
+        }
+        let one = workplace.run(&format!("{line} --only 3..4 -o -")).success();
+        assert_eq!(one.stdout, workplace.read("whole_step003.png"));
+        for number in 2..4 {
+            std::fs::remove_file(workplace.path(&format!("part_step00{number}.png")))
+                .expect("a file");
+        }
+    }
+    workplace
+        .run(&format!("{line} --only 2..6"))
+        .error(&["--only is 2..6", "5 pictures"]);
+    for wrong in ["2", "3..3", "4..2", "a..b", "-1..2", "1..2..3"] {
+        workplace
+            .run(&format!("{line} --only={wrong}"))
+            .error(&["--only", "expected A..B"]);
+    }
+    workplace
+        .run(&format!("{line} --only 0..2 --sheet"))
+        .error(&["--only", "--sheet"]);
+    let film = |flags: &str| {
+        workplace
+            .run(&format!("{line} --film film.png {flags}"))
+            .success();
+        workplace.read("film.png").len()
+    };
+    assert!(film("--only 1..3") < film(""));
+}
+
 #[test]
 fn every_flag_of_a_picture_changes_it() {
     let workplace = Workplace::with_ball();
