@@ -42,8 +42,8 @@ pub(super) struct CameraArgs {
     /// Aim the observer's camera at the middle of the objects at each step anew [default on a sheet]
     #[arg(long, conflicts_with_all = ["hold", "look", "target"])]
     track: bool,
-    /// Hold one direction for all steps: the middle of the whole passage, or the direction of motion if that is too wide for
-    /// a picture; an observer who flies looks along its own -z [default in several pictures and films]
+    /// Hold one direction for all steps: the middle of the whole passage or, if the passage is too wide for a picture, the
+    /// direction of motion; an observer who flies looks along its own -z [default in several pictures and films]
     #[arg(long)]
     hold: bool,
     /// Direction in which the camera looks, of any length [default: towards the middle of the objects; for an observer
