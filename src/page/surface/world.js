@@ -1,0 +1,189 @@
+/** All objects of a scene, each mesh drawn where it is seen. */
+
+import { DataTexture, DataUtils, Group, HalfFloatType, LinearFilter, Matrix3, RGFormat, TextureLoader, Vector3 } from "three";
+import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
+
+import { blackBodyUniforms, colorUniforms, definesOf } from "../effects/colors.js";
+import { scaled, sum } from "../spacetime/vector.js";
+import { viewOf } from "../spacetime/view.js";
+import { Piece } from "./piece.js";
+import { roundOf } from "./round.js";
+
+/** @typedef {import("../spacetime/vector.js").Vec3} Vec3 */
+/** @typedef {import("../data.js").PageData} PageData */
+/** @typedef {import("../data.js").PageObject} PageObject */
+/** @typedef {import("../data.js").Model} Model */
+/** @typedef {import("../tessellation/edge_rule.js").Sharpness} Sharpness */
+
+/** Most leaves of all objects together: beyond them pictures get coarser instead of slower. */
+const MOST_LEAVES = 60_000;
+
+/** How much coarser pictures get, at most, and how quickly they recover. */
+const COARSEST = 64;
+const RECOVERY = 0.97;
+
+export class World {
+    group = new Group();
+    /** Time of the last update in milliseconds. */
+    spent = 0;
+    /** Uniforms that all meshes share: what the views and the effects set. */
+    shared;
+
+    /** @type {{ object: PageObject, pieces: Piece[] }[]} */
+    #objects = [];
+    #model;
+    #coarseness = 1;
+
+    #data;
+
+    /**
+     * @param {PageData} data
+     * @param {Uint8Array} colors The table of colours.
+     */
+    constructor(data, colors) {
+        this.#data = data;
+        this.shared = {
+            ...colorUniforms(data.colors, colors),
+            fromOutside: { value: 0 },
+            upright: { value: new Matrix3() },
+            albedo: { value: albedoTexture(data.shading.albedo) },
+            brightness: { value: new Vector3(data.shading.head_light, data.shading.horizon, data.shading.above) },
+        };
+        this.#model = data.model;
+    }
+
+    /** How many objects there are. */
+    get count() {
+        return this.#objects.length;
+    }
+
+    /**
+     * Loads the meshes.
+     * @param {ArrayBuffer} glb
+     */
+    async load(glb) {
+        const nodes = await nodesOf(glb);
+        for (const object of this.#data.objects) {
+            const pieces = object.nodes.flatMap((name) => this.#piecesOf(object, nodes.get(name)));
+            this.#objects.push({ object, pieces });
+            for (const piece of pieces) {
+                this.group.add(piece.group);
+            }
+        }
+    }
+
+    /**
+     * @param {PageObject} object
+     * @param {import("three").Object3D | undefined} node
+     */
+    #piecesOf(object, node) {
+        /** @type {Piece[]} */
+        const pieces = [];
+        const own = object.emission
+            ? { uniforms: blackBodyUniforms(this.#data.colors, object.emission), defines: { BLACK_BODY: "" } }
+            : { uniforms: {}, defines: {} };
+        node?.traverse((child) => {
+            const mesh = /** @type {import("three").Mesh} */ (child);
+            if (mesh.isMesh) {
+                const place = /** @type {Vec3} */ (node.position.toArray());
+                const origin = sum(place, scaled(object.position, -1));
+                const round = object.shape ? roundOf(object.shape, object, scaled(origin, -1)) : null;
+                pieces.push(new Piece(mesh, origin, round, this.shared, own));
+            }
+        });
+        return pieces;
+    }
+
+    /** @param {PageObject} object */
+    #modelOf(object) {
+        return this.#model === "seen" ? (object.model ?? "seen") : this.#model;
+    }
+
+    /**
+     * Draws all objects under a model and with effects, which are compiled in only where they are on.
+     * @param {Model} model
+     * @param {import("../effects/colors.js").Effects} effects
+     */
+    setLook(model, effects) {
+        this.#model = model;
+        this.shared.exposureFactor.value = 2 ** effects.exposure;
+        for (const { object, pieces } of this.#objects) {
+            const look = { ...definesOf(effects), [`MODEL_${this.#modelOf(object).toUpperCase()}`]: "" };
+            for (const piece of pieces) {
+                piece.setLook(look);
+            }
+        }
+    }
+
+    /**
+     * Moves everything to where it is seen at a moment.
+     * @param {import("../spacetime/moment.js").Moment} moment
+     * @param {Sharpness} sharpness
+     */
+    update(moment, sharpness) {
+        const start = performance.now();
+        const coarse = {
+            ...sharpness,
+            observer: sharpness.observer * this.#coarseness,
+            outside: sharpness.outside * this.#coarseness,
+        };
+        let room = MOST_LEAVES;
+        for (const { object, pieces } of this.#objects) {
+            const view = viewOf(moment, object);
+            for (const piece of pieces) {
+                piece.update(view, this.#modelOf(object), coarse, room);
+                room -= piece.leafCount;
+            }
+        }
+        this.#coarseness = room <= 0 ? Math.min(this.#coarseness * 2, COARSEST) : Math.max(this.#coarseness * RECOVERY, 1);
+        this.spent = performance.now() - start;
+    }
+
+    /**
+     * @param {Model} model
+     * @param {boolean} isShown
+     */
+    setGhost(model, isShown) {
+        for (const { pieces } of this.#objects) {
+            for (const piece of pieces) {
+                piece.setGhost(model, this.#data.ghosts[model], isShown);
+            }
+        }
+    }
+}
+
+/**
+ * The nodes of a GLB by the names in the file.
+ * @param {ArrayBuffer} glb
+ */
+async function nodesOf(glb) {
+    const loader = new GLTFLoader();
+    // Pictures by elements of the page: fetching them is forbidden to it.
+    loader.register((parser) => {
+        parser.textureLoader = new TextureLoader(parser.options.manager);
+        return { name: "pictures_without_fetch" };
+    });
+    const { parser } = await loader.parseAsync(glb, "");
+    /** @type {Map<string, import("three").Object3D>} */
+    const nodes = new Map();
+    for (const [object, { nodes: number }] of parser.associations) {
+        const node = /** @type {import("three").Object3D} */ (object);
+        if (number !== undefined && node.isObject3D) {
+            nodes.set(parser.json.nodes[number].name, node);
+        }
+    }
+    return nodes;
+}
+
+/**
+ * The light of the surroundings that a gloss sends to the eye, by roughness and cosine.
+ * @param {[number, number][][]} table
+ */
+function albedoTexture(table) {
+    const numbers = Uint16Array.from(table.flat(2), (value) => DataUtils.toHalfFloat(value));
+    const texture = new DataTexture(numbers, table[0].length, table.length, RGFormat, HalfFloatType);
+    texture.minFilter = LinearFilter;
+    texture.magFilter = LinearFilter;
+    texture.needsUpdate = true;
+    return texture;
+}
