@@ -12,6 +12,7 @@ mod lamps;
 mod planckian;
 mod ramp;
 mod seen_light;
+mod shader_table;
 mod spectrum;
 mod temperature;
 
@@ -24,5 +25,6 @@ pub use lamps::{
 };
 pub use ramp::{RAMP_OCTAVES, ramp_color};
 pub use seen_light::{Lamplight, SeenLight};
+pub use shader_table::ShaderTable;
 pub use spectrum::{Daylight, Reflectance, black_body_color};
 pub use temperature::{Temperature, TemperatureError};
