@@ -44,20 +44,32 @@ float brighter(float octaves) {
     uniform highp sampler3D colorTable;
     uniform vec4 colorRange; // Binary logarithms of the first and the last factor, number of factors, scale.
 
-    vec3 colorAt(vec3 root, float factor) {
-        float side = float(textureSize(colorTable, 0).x);
-        vec3 place = root * (side - 1.0) + 0.5;
-        place.z += factor * side;
-        vec3 entry = texture(colorTable, place / vec3(textureSize(colorTable, 0))).rgb;
-        return (entry * 255.0 - 128.0) / 127.0 * colorRange.w;
+    vec3 entryAt(ivec3 place) {
+        return (texelFetch(colorTable, place, 0).rgb * 255.0 - 128.0) / 127.0 * colorRange.w;
+    }
+
+    // Linear in each of the six tetrahedra of a cube around its grey diagonal.
+    vec3 restAt(vec3 root, int factor) {
+        int side = textureSize(colorTable, 0).x;
+        vec3 cell = root * float(side - 1);
+        ivec3 corner = min(ivec3(cell), side - 2);
+        vec3 part = cell - vec3(corner);
+        corner.z += factor * side;
+        float most = max(part.x, max(part.y, part.z));
+        float least = min(part.x, min(part.y, part.z));
+        float middle = part.x + part.y + part.z - most - least;
+        ivec3 first = most == part.x ? ivec3(1, 0, 0) : most == part.y ? ivec3(0, 1, 0) : ivec3(0, 0, 1);
+        ivec3 last = least == part.z ? ivec3(0, 0, 1) : least == part.y ? ivec3(0, 1, 0) : ivec3(1, 0, 0);
+        return entryAt(corner) * (1.0 - most) + entryAt(corner + first) * (most - middle)
+            + entryAt(corner + 1 - last) * (middle - least) + entryAt(corner + 1) * least;
     }
 
     // The light of a surface of this colour, channels from 0 to 1, over the luminance of a white one.
     vec3 shiftedLight(vec3 color, float octaves, vec3 hue) {
         float place = clamp((octaves - colorRange.x) / (colorRange.y - colorRange.x), 0.0, 1.0) * (colorRange.z - 1.0);
-        float first = min(floor(place), colorRange.z - 2.0);
+        int first = min(int(place), int(colorRange.z) - 2);
         vec3 root = sqrt(color);
-        vec3 rest = mix(colorAt(root, first), colorAt(root, first + 1.0), place - first);
+        vec3 rest = mix(restAt(root, first), restAt(root, first + 1), place - float(first));
         if (octaves >= colorRange.x && octaves <= colorRange.y) {
             return color * hue + rest;
         }

@@ -1,7 +1,6 @@
 /** The tables that `colors.glsl` reads, made by the library, and the names that the effects are compiled under. */
 
 import {
-    ClampToEdgeWrapping,
     Data3DTexture,
     DataTexture,
     FloatType,
@@ -95,11 +94,6 @@ function cubes({ side, factors }, rest) {
         entries.set(rest.subarray(3 * entry, 3 * entry + 3), 4 * entry);
     }
     const texture = new Data3DTexture(entries, side, side, side * factors);
-    texture.minFilter = LinearFilter;
-    texture.magFilter = LinearFilter;
-    texture.wrapS = ClampToEdgeWrapping;
-    texture.wrapT = ClampToEdgeWrapping;
-    texture.wrapR = ClampToEdgeWrapping;
     texture.needsUpdate = true;
     return texture;
 }
