@@ -13,13 +13,15 @@
  *     cos(phi/2) cosh((eta - eta0)/2) + sigma . ( n cos(phi/2) sinh((eta - eta0)/2)
  *         + c sin(phi/2) sinh((eta + eta0)/2) - i b sin(phi/2) cosh((eta + eta0)/2) )
  *
+ * Where that has large numbers, the turn in the scene is put before the frame and the boost of `eta - eta0` after it.
+ *
  * The place is the integral of the four-velocity: elementary at constant speed; otherwise by Gauss and Legendre's rule of
  * 16 points on pieces so short that it is right to rounding.
  */
 
 import { piecesOf } from "./segment.js";
-import { sincBelow1, sinhc } from "./smooth.js";
-import { eventOf, spinorOf } from "./spinor.js";
+import { sinc, sincBelow1, sinhc } from "./smooth.js";
+import { boost, eventOf, spinorOf } from "./spinor.js";
 import { cross, dot, length, scaled, subtract, sum, unit } from "./vector.js";
 
 /** @typedef {import("./vector.js").Vec3} Vec3 */
@@ -78,15 +80,26 @@ function angleOf({ rapidity, along, across }, properTime) {
     return across * properTime * perGained * (ratio === 0 ? 1 : Math.log1p(ratio) / ratio);
 }
 
-/** In how many pieces a turn is flown. @param {Turn} turn @param {number} properTime */
+/**
+ * In how many pieces a turn is flown.
+ * @param {Turn} turn @param {number} properTime
+ */
 export function piecesOfTurn(turn, properTime) {
-    const end = turn.rapidity + turn.along * properTime;
-    const swing = Math.abs(angleOf(turn, properTime)) * Math.sinh(Math.max(turn.rapidity, end));
-    return Math.max(piecesOf(Math.abs(turn.along * properTime)), piecesOf(swing));
+    return piecesOf(Math.abs(turn.along * properTime));
 }
 
 /**
- * The turn for so much proper time.
+ * Whether the observer leaves the frame in which it began far behind: then a turn is right to rounding in the scene, not
+ * beside something as fast.
+ * @param {Turn} turn @param {number} properTime
+ */
+export function isWide(turn, properTime) {
+    const end = turn.rapidity + turn.along * properTime;
+    return Math.abs(angleOf(turn, properTime)) * Math.sinh(Math.max(turn.rapidity, end)) > 1;
+}
+
+/**
+ * The turn for so much proper time, in the frame of its beginning.
  * @param {Turn} turn @param {number} properTime @returns {Piece}
  */
 export function pieceOfTurn(turn, properTime) {
@@ -97,11 +110,43 @@ export function pieceOfTurn(turn, properTime) {
     const [cos, sin] = [Math.cos(half), Math.sin(half)];
     const real = sum(scaled(ahead, cos * Math.sinh(0.5 * gained)), scaled(aside, sin * Math.sinh(mean)));
     const imaginary = scaled(cross(ahead, aside), -sin * Math.cosh(mean));
-    const [time, forward, sideways] = gained === 0 ? atConstantSpeed(turn, properTime) : integral(turn, properTime);
     return {
-        way: eventOf(time, sum(scaled(ahead, forward), scaled(aside, sideways))),
+        way: wayOf(turn, gained === 0 ? atConstantSpeed(turn, properTime) : integral(turn, properTime, fourVelocity)),
         turn: spinorOf([cos * Math.cosh(0.5 * gained), 0], [real, imaginary]),
     };
+}
+
+/**
+ * The same in the scene: the way, the axis about which the motion turns and the angle, all in the scene's axes turned as the
+ * observer's own were; and the boost after which the frame turns.
+ * @param {Turn} turn @param {number} properTime
+ */
+export function wideTurn(turn, properTime) {
+    const gained = turn.along * properTime;
+    const angle = angleOf(turn, properTime);
+    /** @param {Turn} turn @param {number} properTime */
+    const inScene = (turn, properTime) => {
+        const [now, angle] = [turn.rapidity + turn.along * properTime, angleOf(turn, properTime)];
+        return [Math.cosh(now), Math.sinh(now) * Math.cos(angle), Math.sinh(now) * Math.sin(angle)];
+    };
+    const [sinh, cosh] = [Math.sinh(turn.rapidity), Math.cosh(turn.rapidity)];
+    const circle = [cosh, sinh * sinc(angle), sinh * asideOf(angle)].map((part) => part * properTime);
+    return {
+        way: wayOf(turn, gained === 0 ? circle : integral(turn, properTime, inScene)),
+        axis: cross(turn.ahead, turn.aside),
+        angle,
+        boost: boost(gained, turn.ahead),
+    };
+}
+
+/** @param {Turn} turn @param {number[]} numbers time, way ahead and way aside */
+function wayOf({ ahead, aside }, [time, forward, sideways]) {
+    return eventOf(time, sum(scaled(ahead, forward), scaled(aside, sideways)));
+}
+
+/** `(1 - cos phi) / phi` @param {number} angle */
+function asideOf(angle) {
+    return angle === 0 ? 0 : (2 * Math.sin(0.5 * angle) ** 2) / angle;
 }
 
 /** Time, way ahead and way aside. @param {Turn} turn @param {number} properTime */
@@ -109,13 +154,18 @@ function atConstantSpeed(turn, properTime) {
     const angle = angleOf(turn, properTime);
     const [sinh, cosh] = [Math.sinh(turn.rapidity), Math.cosh(turn.rapidity)];
     const late = sincBelow1(angle);
-    // (1 - cos phi) / phi
-    const aside = angle === 0 ? 0 : (2 * Math.sin(0.5 * angle) ** 2) / angle;
-    return [(1 + sinh * sinh * late) * properTime, -cosh * sinh * late * properTime, sinh * aside * properTime];
+    return [
+        (1 + sinh * sinh * late) * properTime,
+        -cosh * sinh * late * properTime,
+        sinh * asideOf(angle) * properTime,
+    ];
 }
 
-/** The same at changing speed. @param {Turn} turn @param {number} properTime */
-function integral(turn, properTime) {
+/**
+ * The same at changing speed.
+ * @param {Turn} turn @param {number} properTime @param {(turn: Turn, properTime: number) => number[]} fourVelocity
+ */
+function integral(turn, properTime, fourVelocity) {
     const sums = [0, 0, 0];
     const parts = [[0, properTime]];
     for (let part = parts.pop(); part; part = parts.pop()) {

@@ -1,6 +1,6 @@
 /** What an observer is at one instant, and how it flies on. */
 
-import { pieceOfTurn, piecesOfTurn, turnOf } from "./coordinated.js";
+import { isWide, pieceOfTurn, piecesOfTurn, turnOf, wideTurn } from "./coordinated.js";
 import { aboutAxis, rotate } from "./quaternion.js";
 import { segment } from "./segment.js";
 import {
@@ -94,6 +94,17 @@ function after(from, piece, properTime) {
     return moment(event, properTime, unimodular(multiply(from.frame, piece.turn)));
 }
 
+/**
+ * The same of a turn that is given in the scene.
+ * @param {Moment} from @param {ReturnType<typeof wideTurn>} turn @param {number} properTime
+ */
+function afterWideTurn(from, { way, axis, angle, boost }, properTime) {
+    const orientation = orientationOf(from);
+    const event = sumOfEvents(from.event, transform(rotation(orientation), way));
+    const turned = multiply(rotation(aboutAxis(rotate(orientation, axis), angle)), multiply(from.frame, boost));
+    return moment(event, properTime, unimodular(turned));
+}
+
 /** The observer after coasting, axes unturned. @param {Moment} from @param {number} dTau */
 export function coast(from, dTau) {
     const event = sumOfEvents(from.event, transform(from.frame, eventOf(dTau, [0, 0, 0])));
@@ -130,7 +141,10 @@ export function advanceCoordinated(from, acceleration, dTau) {
         if (!turn) {
             return advance(now, acceleration, [0, 0, 0], (dTau * (count - part + 1)) / count);
         }
-        now = after(now, pieceOfTurn(turn, dTau / count), from.properTime + dTau * (part / count));
+        const properTime = from.properTime + dTau * (part / count);
+        now = isWide(turn, dTau / count)
+            ? afterWideTurn(now, wideTurn(turn, dTau / count), properTime)
+            : after(now, pieceOfTurn(turn, dTau / count), properTime);
     }
     return now;
 }
