@@ -15,7 +15,7 @@ use super::speeds::SpeedArgs;
 use super::values::{list, number, numbers, vector, whole_number};
 
 /// What to look at.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct InputArgs {
     /// A scene file (.json), a mesh (.glb, .gltf, .obj, .ply, .stl, .off), or - to read a scene (JSON), a GLB, PLY, STL or OFF
     /// from stdin; coordinates of a PLY, STL or OFF are taken as they stand, y up
@@ -45,6 +45,11 @@ pub(super) struct InputArgs {
 }
 
 impl InputArgs {
+    /// The folders that may be read beside the usual ones.
+    pub(super) fn folders(&self) -> &[PathBuf] {
+        &self.allow_read
+    }
+
     /// What may be read of files that other files name.
     pub(super) fn access(&self) -> Access {
         Access {

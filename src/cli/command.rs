@@ -11,7 +11,7 @@ use rayon::ThreadPoolBuilder;
 
 use super::hints::meant;
 use super::status::{INTERRUPTED, Status, ended};
-use super::{check, cost, example, export, flight, messages, render, schema, values};
+use super::{check, cost, example, export, flight, messages, page, render, schema, values};
 
 /// More threads than so many for each core, and than so many on any machine, only wait for each other.
 const THREADS_PER_CORE: usize = 4;
@@ -44,6 +44,7 @@ pub(super) struct Cli {
 enum Command {
     Export(export::ExportArgs),
     Render(render::RenderArgs),
+    Page(page::PageArgs),
     Check(check::CheckArgs),
     Cost(cost::CostArgs),
     Flight(flight::FlightArgs),
@@ -73,6 +74,7 @@ impl Command {
         match self {
             Self::Export(args) => export::run(args),
             Self::Render(args) => render::run(args),
+            Self::Page(args) => page::run(args),
             Self::Check(args) => check::run(args),
             Self::Cost(args) => cost::run(args).map(|()| Status::Done),
             Self::Flight(args) => flight::run(args).map(|()| Status::Done),

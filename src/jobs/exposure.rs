@@ -18,11 +18,12 @@ const PART: f64 = 0.95;
 /// The luminance up to which a screen shows light as it is.
 const BRIGHT: f64 = 0.8;
 
-/// Finds the exposure of views whose scenes leave it to be found: one for all of them, so that they can be compared.
+/// Finds the exposure of views whose scenes leave it to be found: one for all of them, so that they can be compared. Returns
+/// that exposure.
 ///
 /// Light is measured where the observer sees it. For views from outside, which show all of the photosurfaces, rays go in
 /// the directions of vertices.
-pub(super) fn expose(all: &mut [Views]) -> Result<(), RenderError> {
+pub(super) fn expose(all: &mut [Views]) -> Result<Stops, RenderError> {
     let is_auto =
         |views: &&mut Views| views.placed.scene().effects().shown().exposure == Exposure::Auto;
     let mut found = Vec::new();
@@ -34,7 +35,7 @@ pub(super) fn expose(all: &mut [Views]) -> Result<(), RenderError> {
     for views in all.iter_mut().filter(is_auto) {
         views.set_exposure(stops);
     }
-    Ok(())
+    Ok(stops)
 }
 
 /// The luminances of surfaces that the observer sees.

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use glam::{DVec2, DVec3};
+
 use super::caption::{Block, Words, draw_strip};
 use super::exposure::expose;
 use super::files::check_outputs;
@@ -9,13 +11,14 @@ use super::grid::Grid;
 use super::layout::{Cell, Page, Shape};
 use super::observer_frame::{ObserverFrame, heading};
 use super::outside_camera::{Contents, OutsideCamera};
-use super::picture_settings::{PictureSettings, PictureView};
+use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
 use super::progress::Progress;
 use super::rendered::{RenderError, Rendered};
 use super::seen::sky_of;
 use super::views::Views;
 use crate::pipeline::PlacedScene;
-use crate::render::{Picture, Textures};
+use crate::render::{Picture, Projection, Textures};
+use crate::scene::{Exposure, Stops};
 use crate::write::write_whole;
 
 /// Draws pictures of a scene: one for each step, or one for all steps, depending on `settings.view`.
@@ -349,6 +352,38 @@ fn frame_observer(all: &mut [Views]) -> Result<(), RenderError> {
         views.rendered.frame = Some(frame.facts());
     }
     Ok(())
+}
+
+/// How the observer's pictures of a scene are framed and exposed where nothing else is asked for.
+pub(super) struct FirstView {
+    pub(super) projection: Projection,
+    /// The direction of the camera at the first step, in the observer's own axes.
+    pub(super) look: DVec3,
+    pub(super) exposure: Stops,
+}
+
+/// Frames and exposes the observer's pictures of a scene, without drawing them.
+pub(super) fn first_view(
+    placed: &PlacedScene,
+    textures: &Textures,
+) -> Result<FirstView, RenderError> {
+    let settings = PictureSettings::new(PictureView::Observer(PictureMethod::Rays));
+    let mut views = [Views::new(placed, textures, &settings, &())];
+    frame_observer(&mut views)?;
+    let exposure = match placed.scene().effects().exposure {
+        Exposure::Stops(stops) => stops,
+        Exposure::Auto => expose(&mut views)?,
+    };
+    let [views] = &views;
+    let camera = views.observer_camera(&views.framed(0)?)?;
+    let size = camera.size();
+    let middle = DVec2::new(size.width().into(), size.height().into()) / 2.0;
+    let facts = views.rendered.frame.expect("the pictures are framed");
+    Ok(FirstView {
+        projection: facts.projection,
+        look: camera.direction(middle),
+        exposure,
+    })
 }
 
 /// Draws pictures as [`render()`] does, and writes each as PNG to its file of [`PictureSettings::files`] as soon as it

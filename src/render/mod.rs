@@ -41,6 +41,7 @@ pub use picture::Picture;
 pub use picture_effects::PictureEffects;
 pub(crate) use scenery::grid_places;
 pub use scenery::{PictureOptions, Scenery};
+pub(crate) use shading::HeadLight;
 pub use stroke::Strokes;
 pub use texture::{MissingTexture, Textures};
 pub use viewpoint::Viewpoint;

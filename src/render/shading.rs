@@ -21,8 +21,9 @@
 use std::ops::{Add, AddAssign, Mul};
 
 use glam::DVec3;
+use serde::Serialize;
 
-use super::albedo::albedo;
+use super::albedo::{TABLE, albedo};
 
 /// How brightly a white matte surface that faces the lamp at the eye is lit by that lamp alone.
 const HEAD_LIGHT: f64 = 0.65;
@@ -32,6 +33,26 @@ const HEAD_LIGHT: f64 = 0.65;
 /// where the lamp alone would show none.
 const HORIZON: f64 = 0.19;
 const ABOVE: f64 = 0.165;
+
+/// What the light of pictures is made of, for programs that shade in the same way.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct HeadLight {
+    /// The parts of an even light from all around that a gloss sends to the eye, tinted and white: see [`super::albedo`].
+    albedo: [[[f64; 2]; 11]; 10],
+    head_light: f64,
+    horizon: f64,
+    above: f64,
+}
+
+impl HeadLight {
+    /// The numbers of this file.
+    pub(crate) const TABLES: Self = Self {
+        albedo: TABLE,
+        head_light: HEAD_LIGHT,
+        horizon: HORIZON,
+        above: ABOVE,
+    };
+}
 
 /// The smallest roughness: a lamp that is a point would be seen in a mirror as nothing, or as infinitely bright.
 const LEAST_ROUGHNESS: f64 = 0.1;

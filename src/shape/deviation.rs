@@ -403,17 +403,6 @@ mod tests {
         }
     }
 
-    fn resolution(shape: &Shape) -> Option<u32> {
-        match shape {
-            Shape::Sphere(shape) => shape.resolution.map(|n| n.get()),
-            Shape::Cylinder(shape) => shape.resolution.map(|n| n.get()),
-            Shape::Rod(shape) => shape.resolution.map(|n| n.get()),
-            Shape::Cone(shape) => shape.resolution.map(|n| n.get()),
-            Shape::Torus(shape) => shape.resolution.map(|n| n.get()),
-            Shape::Cuboid(_) | Shape::Grid(_) | Shape::Lattice(_) => None,
-        }
-    }
-
     #[test]
     fn a_tolerance_gets_the_coarsest_resolution_that_keeps_it() {
         for shape in round_shapes() {
@@ -421,7 +410,7 @@ mod tests {
             for exponent in -24..=4 {
                 let deviation = 10f64.powf(f64::from(exponent) / 4.0);
                 let fitting = shape.within(deviation);
-                let found = resolution(&fitting).unwrap();
+                let found = fitting.resolution().unwrap();
                 assert!((COARSEST..=finer).contains(&found), "{fitting:?}");
                 finer = found;
                 let at = |n| shape.clone().with_resolution(n).unwrap();
@@ -446,7 +435,7 @@ mod tests {
         for shape in round_shapes() {
             for deviation in [0.0, -1.0, f64::NAN] {
                 let fitting = shape.within(deviation);
-                let found = resolution(&fitting).unwrap();
+                let found = fitting.resolution().unwrap();
                 let next = shape.clone().with_resolution(found + 1);
                 let no_finer = next.map_or(true, |next| next.triangle_count() > MAX_TRIANGLES);
                 assert!(no_finer, "{fitting:?}");

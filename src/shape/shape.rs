@@ -193,6 +193,20 @@ impl Shape {
         })
     }
 
+    /// The resolution of its own, if it has one.
+    pub fn resolution(&self) -> Option<u32> {
+        match self {
+            Self::Sphere(shape) => shape.resolution.map(Count::get),
+            Self::Cuboid(shape) => shape.resolution.map(Count::get),
+            Self::Cylinder(shape) => shape.resolution.map(Count::get),
+            Self::Cone(shape) => shape.resolution.map(Count::get),
+            Self::Torus(shape) => shape.resolution.map(Count::get),
+            Self::Rod(shape) => shape.resolution.map(Count::get),
+            Self::Grid(shape) => shape.resolution.map(Count::get),
+            Self::Lattice(shape) => shape.resolution.map(Count::get),
+        }
+    }
+
     /// The shape as a mesh with its material.
     ///
     /// Vertices are on the true surface and have its normals; where faces meet at an edge, each has

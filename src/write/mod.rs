@@ -12,6 +12,7 @@ mod growing;
 mod helper;
 mod layer;
 mod pack;
+mod page;
 mod ply;
 mod range;
 mod report;
@@ -31,6 +32,7 @@ pub use film::{
 };
 pub use format::Format;
 pub use gltf::{GltfFile, GltfOutput, replaced_data, write_glb, write_gltf, write_whole_gltf};
+pub use page::{PageContent, write_page};
 pub use ply::write_ply;
 pub(crate) use report::schema_of;
 pub use report::{OutputFile, Provenance, Report, StageTime};
