@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { advance, coast, momentOf } from "../../src/page/spacetime/moment.js";
-import { Diagram, frameOf, tickOf } from "../../src/page/ui/diagram.js";
+import { Diagram, frameOf, tickOf, tickText } from "../../src/page/ui/diagram.js";
 import { History } from "../../src/page/ui/history.js";
 
 const START = { time: 0, position: [0, 0, 0], rapidity: 1, direction: [1, 2, 2], orientation: [0, 0, 0, 1] };
@@ -44,6 +44,10 @@ test("a frame shows all at one scale", () => {
     assert.ok(Math.abs(right[0] - left[0] - 8 * scale) < 1e-9 && Math.abs(left[1] - right[1] - scale) < 1e-9);
     assert.ok(low.x < -3 && high.x > 5 && low.t < 1 && high.t > 2);
     assert.deepEqual([0.9, 4, 10, 25, 1e-7].map(tickOf), [0.2, 1, 2, 5, 2e-8]);
+    assert.deepEqual(
+        [tickText(-20, 10), tickText(0.4, 0.2), tickText(2e5, 1e5), tickText(0, 1e5), tickText(3e-7, 1e-7)],
+        ["−20", "0.4", "2e5", "0", "3e−7"],
+    );
 });
 
 /** A canvas that keeps what is drawn. */

@@ -30,7 +30,7 @@ const COLORS = {
     grid: "#2b333b",
     light: "#56606a",
     letters: "#a9b4bf",
-    object: "#c98238",
+    object: "#a86f35",
     observer: "#56b4e9",
     cone: "#f2dc6b",
     coneInside: "#f2dc6b1f",
@@ -172,7 +172,7 @@ function draw(pen, size, direction, events, moment, bodies, sizeOfScene) {
     pen.fillStyle = COLORS.ground;
     pen.fillRect(0, 0, size.width, size.height);
     pen.font = `${LETTERS}px system-ui, sans-serif`;
-    drawTicks(pen, size, frame, line);
+    const letters = drawTicks(size, frame, line);
 
     for (const body of bodies) {
         const velocity = Math.tanh(body.rapidity) * along(unit(body.direction, AHEAD));
@@ -208,41 +208,61 @@ function draw(pen, size, direction, events, moment, bodies, sizeOfScene) {
     pen.arc(...frame.place(now), 3.5, 0, 2 * Math.PI);
     pen.fillStyle = COLORS.observer;
     pen.fill();
+
+    pen.setLineDash([]);
+    pen.lineWidth = 3;
+    pen.strokeStyle = COLORS.ground;
+    pen.fillStyle = COLORS.letters;
+    pen.textBaseline = "middle";
+    for (const { text, x, y, align } of letters) {
+        pen.textAlign = align;
+        pen.strokeText(text, x, y);
+        pen.fillText(text, x, y);
+    }
 }
 
 /**
- * @param {CanvasRenderingContext2D} pen
+ * @param {number} value
+ * @param {number} step From one tick to the next.
+ */
+export function tickText(value, step) {
+    const digits = Math.max(0, -Math.floor(Math.log10(step)));
+    const isLong = digits > 3 || Math.abs(value) >= 1e5;
+    const text =
+        isLong && value !== 0
+            ? value.toExponential(1).replace(".0", "").replace("+", "")
+            : value.toFixed(isLong ? 0 : digits);
+    return text.replaceAll("-", "−");
+}
+
+/**
+ * Lines and numbers of the scale: the numbers are returned, to be written when all else is drawn.
  * @param {{ width: number, height: number }} size
  * @param {ReturnType<typeof frameOf>} frame
  * @param {(color: string, width: number, dashes: number[], ...points: { x: number, t: number }[]) => void} line
  */
-function drawTicks(pen, { width, height }, { low, high, place }, line) {
+function drawTicks({ width, height }, { low, high, place }, line) {
     const step = tickOf(Math.min(high.x - low.x, high.t - low.t));
-    pen.fillStyle = COLORS.letters;
-    const digits = Math.max(0, -Math.floor(Math.log10(step)));
-    const text = (/** @type {number} */ value) =>
-        digits > 4 || Math.abs(value) >= 1e5 ? value.toExponential(1) : value.toFixed(digits);
-    pen.textAlign = "center";
-    pen.textBaseline = "bottom";
+    /** @type {{ text: string, x: number, y: number, align: CanvasTextAlign }[]} */
+    const letters = [
+        { text: "t", x: 3, y: LETTERS, align: "left" },
+        { text: "x", x: width - 4, y: height - LETTERS, align: "right" },
+    ];
     for (let tick = Math.ceil(low.x / step); tick * step <= high.x; tick++) {
         const x = tick * step;
         line(COLORS.grid, 1, [], { x, t: low.t }, { x, t: high.t });
         const [at] = place({ x, t: low.t });
         if (at > 3 * LETTERS && at < width - 2 * LETTERS) {
-            pen.fillText(text(x), at, height - 3);
+            letters.push({ text: tickText(x, step), x: at, y: height - LETTERS, align: "center" });
         }
     }
-    pen.textAlign = "left";
-    pen.textBaseline = "middle";
     for (let tick = Math.ceil(low.t / step); tick * step <= high.t; tick++) {
         const t = tick * step;
         line(COLORS.grid, 1, [], { x: low.x, t }, { x: high.x, t });
         const [, at] = place({ x: low.x, t });
         if (at > 2 * LETTERS && at < height - 2 * LETTERS) {
-            pen.fillText(text(t), 3, at);
+            letters.push({ text: tickText(t, step), x: 3, y: at, align: "left" });
         }
     }
-    pen.fillText("t", 3, LETTERS);
-    pen.textAlign = "right";
-    pen.fillText("x", width - 4, height - LETTERS);
+    return letters;
 }
