@@ -123,7 +123,6 @@ test("a command makes the picture of its moment in the scene's own flight", () =
     const flights = {
         flight: [2.1, 3],
         takeoff: [1.5],
-        orbit: [3],
     };
     for (const [example, times] of Object.entries(flights)) {
         const { observer, effects } = JSON.parse(run(["example", example]));
