@@ -4,9 +4,10 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
+import { momentOfFlight } from "../../src/page/spacetime/flight.js";
 import { advance, momentOf, observerOf } from "../../src/page/spacetime/moment.js";
 import { exportCommand, renderCommand, shellWord } from "../../src/page/ui/command.js";
-import { inFolder, run, runLine } from "./program.mjs";
+import { inFolder, pixelsOf, run, runLine } from "./program.mjs";
 
 const STATE = {
     model: "seen",
@@ -80,11 +81,13 @@ test("numbers of a command are those of the moment", () => {
 });
 
 test("a command switches off what the scene has on", () => {
-    const scene = { ...SCENE, flight: [{}], effects: { searchlight: true } };
+    const scene = { ...SCENE, flight: [{ steer: "free" }, { steer: "coordinated" }], effects: { searchlight: true } };
     const off = exportCommand(scene, MOMENT, STATE);
     assert.ok(off.includes(" --no-searchlight") && off.includes(" --no-flight"), off);
     const on = exportCommand(scene, MOMENT, { ...STATE, searchlight: true });
     assert.ok(on.includes(" --searchlight") && !on.includes("--no-searchlight"), on);
+    const free = exportCommand({ ...scene, flight: [{ steer: "free" }] }, MOMENT, STATE);
+    assert.ok(!free.includes("--no-flight"), free);
 });
 
 test("words of a command survive a shell", () => {
@@ -95,6 +98,51 @@ test("words of a command survive a shell", () => {
             assert.equal(stdout, word);
         }
     });
+});
+
+/** Renders two commands, and counts the pixels that differ by more than rounding. */
+function differing(first, second) {
+    return inFolder((folder) => {
+        const [a, b] = [first, second].map((line) => {
+            const { status, stderr } = runLine(line, folder);
+            assert.equal(status, 0, `${line}\n${stderr}`);
+            return pixelsOf(readFileSync(join(folder, "seen.png")));
+        });
+        assert.deepEqual([a.width, a.height], [b.width, b.height]);
+        assert.ok(new Set(a.rows.flatMap((row) => [...row])).size > 8, "the picture is empty");
+        const pixels = Array.from({ length: a.width * a.height }, (_, pixel) => {
+            const [row, column] = [Math.floor(pixel / a.width), pixel % a.width];
+            const channels = Array.from({ length: a.channels }, (_, channel) => a.channels * column + channel);
+            return channels.some((at) => Math.abs(a.rows[row][at] - b.rows[row][at]) > 2);
+        });
+        return pixels.filter(Boolean).length;
+    });
+}
+
+test("a command makes the picture of its moment in the scene's own flight", () => {
+    const flights = {
+        flight: [2.1, 3],
+        takeoff: [1.5],
+    };
+    for (const [example, times] of Object.entries(flights)) {
+        const { observer, effects } = JSON.parse(run(["example", example]));
+        const { moments } = JSON.parse(run(["flight", "--example", example, "--steps", "0", "--json", "-"]));
+        const [{ time, position, rapidity, velocity }] = moments;
+        const direction = rapidity > 0 ? velocity : [0, 0, -1];
+        const start = { time, position, rapidity, direction, orientation: [0, 0, 0, 1] };
+        assert.equal(observer.orientation, undefined);
+        const segments = observer.flight.map((segment) => ({ turn_rate: [0, 0, 0], steer: "free", ...segment }));
+        const scene = { ...SCENE, input: `--example ${example}`, flight: segments };
+        assert.equal(effects, undefined);
+        for (const properTime of times) {
+            const moment = momentOfFlight(start, segments, properTime);
+            const command = renderCommand(scene, moment, STATE, { width: 160, height: 90 });
+            const own = `photosurface render --example ${example} --steps ${properTime} --fov 60 --look 0,0,-1 --size 160x90 --projection perspective -o seen.png`;
+            const count = differing(command, own);
+            // Edges that rays meet exactly are on either side of them by rounding.
+            assert.ok(count <= 160 * 90 * 1e-3, `${count} pixels of ${command}`);
+        }
+    }
 });
 
 test("a camera that looks elsewhere is that of the page", () => {
@@ -113,6 +161,18 @@ test("a camera that looks elsewhere is that of the page", () => {
         writeFileSync(join(folder, "scene.json"), JSON.stringify({ objects: [sphere] }));
         const { status, stderr } = runLine(words.replace("seen.png", "middle.png"), folder);
         assert.equal(status, 0, stderr);
-        assert.ok(readFileSync(join(folder, "middle.png")).length > 200, "the picture is empty");
+        const { rows, channels, width, height } = pixelsOf(readFileSync(join(folder, "middle.png")));
+        const brightness = rows.map((row) => Array.from({ length: width }, (_, column) => row[channels * column]));
+        const middle = brightness[(height - 1) / 2][(width - 1) / 2];
+        assert.ok(middle > 150 && brightness[0][0] < 50, `${middle}`);
+        // As much to the left as to the right, as much above as below.
+        const sums = [0, 0];
+        brightness.forEach((row, y) => {
+            row.forEach((value, x) => {
+                sums[0] += (value - brightness[0][0]) * (x - (width - 1) / 2);
+                sums[1] += (value - brightness[0][0]) * (y - (height - 1) / 2);
+            });
+        });
+        assert.ok(Math.abs(sums[0]) < 0.2 * middle && Math.abs(sums[1]) < 0.2 * middle, `${sums}`);
     });
 });

@@ -3,7 +3,8 @@
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
+import { inflateSync } from "node:zlib";
 
 /** The program `photosurface`. */
 export function binary() {
@@ -28,8 +29,9 @@ export function run(args, input) {
 
 /** Runs a line of a POSIX shell in a folder, in which `photosurface` is the program. */
 export function runLine(line, folder) {
-    const shell = `photosurface() { "$PHOTOSURFACE_BINARY" "$@"; }\n${line}`;
-    return spawnSync("sh", ["-c", shell], { cwd: folder, encoding: "utf8" });
+    const shell = `photosurface() { "$PROGRAM" "$@"; }\n${line}`;
+    const env = { ...process.env, PROGRAM: resolve(binary()) };
+    return spawnSync("sh", ["-c", shell], { cwd: folder, encoding: "utf8", env });
 }
 
 /** Calls a function with a folder that is gone afterwards. */
@@ -81,6 +83,42 @@ function verticesOfPly(bytes) {
     return Array.from({ length: count }, (_, vertex) =>
         [0, 8, 16].map((at) => bytes.readDoubleLE(headerSize + vertex * stride + at)),
     );
+}
+
+/** The rows of a PNG of 8 bits for each channel, as the program writes them. */
+export function pixelsOf(png) {
+    const [width, height] = [png.readUInt32BE(16), png.readUInt32BE(20)];
+    const channels = { 0: 1, 2: 3, 6: 4 }[png[25]];
+    if (png[24] !== 8 || png[28] !== 0 || !channels) {
+        throw new Error("expected a PNG of 8 bits, in colour, not interlaced");
+    }
+    const parts = [];
+    for (let at = 8; at < png.length; at += 12 + png.readUInt32BE(at)) {
+        if (png.toString("latin1", at + 4, at + 8) === "IDAT") {
+            parts.push(png.subarray(at + 8, at + 8 + png.readUInt32BE(at)));
+        }
+    }
+    const bytes = inflateSync(Buffer.concat(parts));
+    const stride = width * channels;
+    const rows = [];
+    for (let y = 0; y < height; y++) {
+        const filter = bytes[y * (stride + 1)];
+        const row = Uint8Array.from(bytes.subarray(y * (stride + 1) + 1, (y + 1) * (stride + 1)));
+        const above = rows[y - 1] ?? new Uint8Array(stride);
+        for (let at = 0; at < stride; at++) {
+            const [left, corner] = at < channels ? [0, 0] : [row[at - channels], above[at - channels]];
+            row[at] += [0, left, above[at], (left + above[at]) >> 1, nearest(left, above[at], corner)][filter];
+        }
+        rows.push(row);
+    }
+    return { width, height, channels, rows };
+}
+
+/** Paeth's prediction. */
+function nearest(left, above, corner) {
+    const sum = left + above - corner;
+    const gaps = [left, above, corner].map((value) => Math.abs(sum - value));
+    return [left, above, corner][gaps.indexOf(Math.min(...gaps))];
 }
 
 /** Numbers from 0 to 1 that look random: mulberry32. */

@@ -57,11 +57,20 @@ export function momentOf(observer, properTime = 0) {
     return moment(eventOf(observer.time, observer.position), properTime, unimodular(frame));
 }
 
+/** What is left of a zero in a unit vector that was computed with twice the digits. */
+const NOTHING = 1e-18;
+
 /** The observer of a moment, its numbers rounded. @param {Moment} moment @returns {Observer} */
 export function observerOf(moment) {
     const { rapidity, direction } = velocityOf(moment);
-    const [x, y, z] = moment.position;
-    return { time: moment.time, position: [x, y, z], rapidity, direction, orientation: orientationOf(moment) };
+    const [[x, y, z], [a, b, c]] = [moment.position, direction.map(orZero)];
+    const [i, j, k, w] = orientationOf(moment).map(orZero);
+    return { time: moment.time, position: [x, y, z], rapidity, direction: [a, b, c], orientation: [i, j, k, w] };
+}
+
+/** @param {number} part of a unit vector */
+function orZero(part) {
+    return Math.abs(part) < NOTHING ? 0 : part;
 }
 
 /** In the scene frame; the direction of rest is the one ahead. @param {Moment} moment */

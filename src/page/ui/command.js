@@ -8,7 +8,7 @@ import { observerOf } from "../spacetime/moment.js";
  * @typedef {object} CommandScene
  * @property {string} input The words for the input and how it is read, as a shell takes them.
  * @property {string} background
- * @property {readonly unknown[]} flight
+ * @property {readonly { steer: "free" | "coordinated" }[]} flight
  * @property {{ searchlight: boolean }} effects
  */
 
@@ -81,8 +81,8 @@ function flagsOf(scene, moment, state) {
     } else if (scene.effects.searchlight) {
         flags.push("--no-searchlight");
     }
-    if (scene.flight.length > 0) {
-        // From another start it may lead where no flight is.
+    // Nothing of the scene's flight is in the picture. But from here a coordinated turn may come to rest, which is refused.
+    if (scene.flight.some(({ steer }) => steer === "coordinated")) {
         flags.push("--no-flight");
     }
     return flags;
