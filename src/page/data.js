@@ -29,7 +29,6 @@
  * @property {string} version
  * @property {string} title
  * @property {string} input
- * @property {string | null} unit
  * @property {{ time: number, position: Vec3, rapidity: number, direction: Vec3, orientation: Quaternion }} observer
  * @property {{ proper_time: number, acceleration: Vec3, turn_rate: Vec3, steer: "free" | "coordinated" }[]} flight
  * @property {number[]} steps
@@ -38,6 +37,7 @@
  * @property {{ doppler: "none" | "spectrum" | "ramp", searchlight: boolean, exposure: number }} effects
  * @property {Model} model
  * @property {string} background
+ * @property {number} lamps How many lamps the scene has; the page does not show them.
  * @property {PageObject[]} objects
  * @property {{ albedo: [number, number][][], head_light: number, horizon: number, above: number }} shading
  * @property {Record<Model, string>} ghosts Colours of ghosts by the model.

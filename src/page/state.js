@@ -50,7 +50,9 @@ export class Store {
 
     /** @param {Partial<State>} changes */
     change(changes) {
-        const changed = /** @type {StateKey[]} */ (Object.keys(changes)).filter((key) => this.#state[key] !== changes[key]);
+        const changed = /** @type {StateKey[]} */ (Object.keys(changes)).filter(
+            (key) => this.#state[key] !== changes[key],
+        );
         if (changed.length === 0) {
             return;
         }

@@ -54,6 +54,7 @@ export const words = {
     failed: "This page cannot be shown",
     noWebGl: "It needs WebGL 2, which this browser does not offer.",
     contextLost: "The graphics processor was lost; waiting for it to come back.",
+    contextBack: "The graphics processor is back.",
     noLamps: "Lamps of the scene are not shown; light comes from the eye.",
     stickThrust: "Thrust and roll",
     stickTurn: "Turn",

@@ -59,7 +59,7 @@ export function colorUniforms(tables, rest) {
 export function blackBodyUniforms(tables, { kelvin, luminance }) {
     const octaves = Math.log2(kelvin / tables.daylight_kelvin);
     const { light, log2_from: from, log2_to: to } = tables.white;
-    const place = (Math.min(Math.max((octaves - from) / (to - from), 0), 1) * (light.length - 1));
+    const place = Math.min(Math.max((octaves - from) / (to - from), 0), 1) * (light.length - 1);
     const first = Math.min(Math.floor(place), light.length - 2);
     const hue = [0, 1, 2].map((channel) => {
         const [low, high] = [light[first][channel], light[first + 1][channel]];
@@ -74,7 +74,9 @@ export function blackBodyUniforms(tables, { kelvin, luminance }) {
  */
 function rowTexture(rows, filter) {
     const numbers = new Float32Array(4 * rows.length);
-    rows.forEach((row, at) => numbers.set(row, 4 * at));
+    for (const [at, row] of rows.entries()) {
+        numbers.set(row, 4 * at);
+    }
     const isLinear = filter === LinearFilter;
     const bytes = isLinear ? Uint8Array.from(numbers, (value) => Math.round(255 * value)) : numbers;
     const texture = new DataTexture(bytes, rows.length, 1, RGBAFormat, isLinear ? UnsignedByteType : FloatType);

@@ -3,9 +3,9 @@
 import { BufferAttribute, DynamicDrawUsage, Group, Matrix3, Mesh, Vector2, Vector3 } from "three";
 
 import { Placement } from "../light_cone/placement.js";
-import { sightOf } from "../light_cone/sight.js";
+import { POINT_NUMBERS, seePoint, sightOf } from "../light_cone/sight.js";
 import { conjugate, rotate } from "../spacetime/quaternion.js";
-import { sum, scaled } from "../spacetime/vector.js";
+import { scaled, sum } from "../spacetime/vector.js";
 import { clustersOf } from "../tessellation/clusters.js";
 import { LEAF_HALVINGS } from "../tessellation/edge_rule.js";
 import { Tessellation } from "../tessellation/tessellation.js";
@@ -22,11 +22,17 @@ import { vertexTable } from "./vertex_table.js";
 /** The layers of three.js: what all views show, and what only the view from outside does. */
 export const OUTSIDE_LAYER = 1;
 
+/** So many vertices tell where a mesh is seen. */
+const MOST_PLACES = 100;
+
 export class Piece {
     /** All that is drawn of the mesh. */
     group = new Group();
     /** How many leaves were drawn last. */
     leafCount = 0;
+    /** The middle of the mesh relative to the object's origin, and the radius of a ball about it that holds the mesh. */
+    middle;
+    radius;
 
     #mesh;
     /** @type {{ geometry: LeafGeometry, mesh: Mesh | null }[]} */
@@ -66,9 +72,18 @@ export class Piece {
         drawn.setUsage(DynamicDrawUsage);
         geometry.setIndex(drawn);
         this.#origin = origin;
+        geometry.computeBoundingSphere();
+        const ball = /** @type {import("three").Sphere} */ (geometry.boundingSphere);
+        this.middle = sum(origin, /** @type {Vec3} */ (ball.center.toArray()));
+        this.radius = ball.radius;
         this.#placement = new Placement();
         this.#defines = { ...own.defines, ...(round && { [round.kind]: "" }) };
-        this.#uniforms = { ...shared, ...own.uniforms, ...this.#placement.uniforms, ...(round ? roundUniforms(round) : {}) };
+        this.#uniforms = {
+            ...shared,
+            ...own.uniforms,
+            ...this.#placement.uniforms,
+            ...(round ? roundUniforms(round) : {}),
+        };
         const hasOpacity = geometry.attributes.color?.itemSize === 4;
         this.#leaves = Array.from({ length: LEAF_HALVINGS + 1 }, (_, halvings) => {
             return { geometry: new LeafGeometry(2 ** halvings, hasOpacity), mesh: null };
@@ -106,6 +121,24 @@ export class Piece {
         const camera = rotate(conjugate(view.rotation), sharpness.camera);
         this.leafCount = this.#tessellation.update(sight, { ...sharpness, camera }, room);
         this.#upload();
+    }
+
+    /**
+     * Where some of the vertices are seen, in the observer's own axes.
+     * @param {import("../spacetime/view.js").View} view
+     * @param {Model} model
+     * @returns {Vec3[]}
+     */
+    seenPlaces(view, model) {
+        const { array, count } = this.#mesh.geometry.attributes.position;
+        const sight = sightOf(this.#place(view), view.direction, view.rapidity, model);
+        const point = new Float64Array(POINT_NUMBERS);
+        const places = [];
+        for (let vertex = 0; vertex < count; vertex += Math.ceil(count / MOST_PLACES)) {
+            seePoint(sight, array[3 * vertex], array[3 * vertex + 1], array[3 * vertex + 2], point, 0);
+            places.push(rotate(view.rotation, [point[4], point[5], point[6]]));
+        }
+        return places;
     }
 
     /**
@@ -190,7 +223,9 @@ export class Piece {
  */
 function properTriangles(geometry) {
     const count = geometry.attributes.position.count;
-    const index = geometry.index ? Uint32Array.from(geometry.index.array) : Uint32Array.from({ length: count }, (_, k) => k);
+    const index = geometry.index
+        ? Uint32Array.from(geometry.index.array)
+        : Uint32Array.from({ length: count }, (_, k) => k);
     let kept = 0;
     for (let at = 0; at + 2 < index.length; at += 3) {
         const [a, b, c] = [index[at], index[at + 1], index[at + 2]];

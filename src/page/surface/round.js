@@ -37,7 +37,12 @@ export function roundOf(shape, object, origin) {
     }
     if ("torus" in shape) {
         const { major_radius: major, minor_radius: minor } = shape.torus;
-        return { ...common, kind: "ROUND_TORUS", radii: [major, minor], curvature: largest * Math.max(1 / minor, 1 / (major - minor)) };
+        return {
+            ...common,
+            kind: "ROUND_TORUS",
+            radii: [major, minor],
+            curvature: largest * Math.max(1 / minor, 1 / (major - minor)),
+        };
     }
     const { radius } = Object.values(shape)[0];
     return { ...common, kind: "ROUND_LATHE", radii: [0, 0], curvature: largest / radius };

@@ -1,10 +1,22 @@
 /** All objects of a scene, each mesh drawn where it is seen. */
 
-import { DataTexture, DataUtils, Group, HalfFloatType, LinearFilter, Matrix3, RGFormat, TextureLoader, Vector3 } from "three";
+import {
+    DataTexture,
+    DataUtils,
+    Group,
+    HalfFloatType,
+    LinearFilter,
+    Matrix3,
+    RGFormat,
+    TextureLoader,
+    Vector3,
+} from "three";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 
 import { blackBodyUniforms, colorUniforms, definesOf } from "../effects/colors.js";
-import { scaled, sum } from "../spacetime/vector.js";
+import { orientationOf } from "../spacetime/moment.js";
+import { rotate } from "../spacetime/quaternion.js";
+import { length, scaled, subtract, sum } from "../spacetime/vector.js";
 import { viewOf } from "../spacetime/view.js";
 import { Piece } from "./piece.js";
 import { roundOf } from "./round.js";
@@ -17,6 +29,9 @@ import { roundOf } from "./round.js";
 
 /** Most leaves of all objects together: beyond them pictures get coarser instead of slower. */
 const MOST_LEAVES = 60_000;
+
+/** The part of what is seen that the first view from outside has in its picture. */
+const MOST_SEEN = 0.8;
 
 /** How much coarser pictures get, at most, and how quickly they recover. */
 const COARSEST = 64;
@@ -52,9 +67,37 @@ export class World {
         this.#model = data.model;
     }
 
-    /** How many objects there are. */
-    get count() {
-        return this.#objects.length;
+    /** The radius of a ball about the middle of all objects at scene time 0 that holds them. */
+    get size() {
+        const places = this.#objects.flatMap(({ object, pieces }) =>
+            pieces.map((piece) => ({ place: sum(object.position, piece.middle), radius: piece.radius })),
+        );
+        const middle = scaled(
+            places.reduce((total, { place }) => sum(total, place), /** @type {Vec3} */ ([0, 0, 0])),
+            1 / Math.max(places.length, 1),
+        );
+        return Math.max(...places.map(({ place, radius }) => length(subtract(place, middle)) + radius), 1e-30);
+    }
+
+    /**
+     * A ball that holds most of the photosurfaces, and the observer: in the axes of the scene under the observer's boost.
+     * @param {import("../spacetime/moment.js").Moment} moment
+     * @returns {{ middle: Vec3, radius: number }}
+     */
+    seenBall(moment) {
+        const orientation = orientationOf(moment);
+        const seen = this.#objects.flatMap(({ object, pieces }) => {
+            const view = viewOf(moment, object);
+            return pieces.flatMap((piece) => piece.seenPlaces(view, this.#modelOf(object)));
+        });
+        const places = seen.map((place) => rotate(orientation, place));
+        // What is drawn out far ahead would make all else small.
+        places.sort((a, b) => length(a) - length(b));
+        const kept = [/** @type {Vec3} */ ([0, 0, 0]), ...places.slice(0, Math.ceil(places.length * MOST_SEEN))];
+        const low = [0, 1, 2].map((axis) => Math.min(...kept.map((place) => place[axis])));
+        const high = [0, 1, 2].map((axis) => Math.max(...kept.map((place) => place[axis])));
+        const middle = /** @type {Vec3} */ (low.map((least, axis) => (least + high[axis]) / 2));
+        return { middle, radius: Math.max(...kept.map((place) => length(subtract(place, middle))), 1e-30) };
     }
 
     /**
@@ -79,6 +122,7 @@ export class World {
     #piecesOf(object, node) {
         /** @type {Piece[]} */
         const pieces = [];
+        /** @type {{ uniforms: import("./material.js").Uniforms, defines: import("./material.js").Defines }} */
         const own = object.emission
             ? { uniforms: blackBodyUniforms(this.#data.colors, object.emission), defines: { BLACK_BODY: "" } }
             : { uniforms: {}, defines: {} };
@@ -135,7 +179,8 @@ export class World {
                 room -= piece.leafCount;
             }
         }
-        this.#coarseness = room <= 0 ? Math.min(this.#coarseness * 2, COARSEST) : Math.max(this.#coarseness * RECOVERY, 1);
+        this.#coarseness =
+            room <= 0 ? Math.min(this.#coarseness * 2, COARSEST) : Math.max(this.#coarseness * RECOVERY, 1);
         this.spent = performance.now() - start;
     }
 

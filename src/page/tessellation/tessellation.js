@@ -126,7 +126,8 @@ export class Tessellation {
         const radius = bounds[at + 3] * sight.elongation;
         const edge2 = bounds[at + 4] * sight.elongation ** 2;
         const r = pool[3];
-        const forward = r > 0 ? (pool[0] * sight.motion[0] + pool[1] * sight.motion[1] + pool[2] * sight.motion[2]) / r : 0;
+        const forward =
+            r > 0 ? (pool[0] * sight.motion[0] + pool[1] * sight.motion[1] + pool[2] * sight.motion[2]) / r : 0;
         const curvature = this.#round ? this.#round.curvature : 0;
         // How far the map reaches: I + n a, with a the slope of the place along the motion.
         const slope = sight.delayed
@@ -227,7 +228,15 @@ export class Tessellation {
     #edgeOfMesh(a, b, at) {
         const points = this.#points;
         return this.#round
-            ? roundHalvings(this.#sight, this.#sharpness, points, POINT_NUMBERS * a, POINT_NUMBERS * b, this.#sags, 3 * at)
+            ? roundHalvings(
+                  this.#sight,
+                  this.#sharpness,
+                  points,
+                  POINT_NUMBERS * a,
+                  POINT_NUMBERS * b,
+                  this.#sags,
+                  3 * at,
+              )
             : halvings(this.#sight, this.#sharpness, points, POINT_NUMBERS * a, POINT_NUMBERS * b);
     }
 
@@ -237,7 +246,14 @@ export class Tessellation {
             this.#stamps[vertex] = this.#stamp;
             const positions = this.#positions;
             const at = 3 * vertex;
-            seePoint(this.#sight, positions[at], positions[at + 1], positions[at + 2], this.#points, POINT_NUMBERS * vertex);
+            seePoint(
+                this.#sight,
+                positions[at],
+                positions[at + 1],
+                positions[at + 2],
+                this.#points,
+                POINT_NUMBERS * vertex,
+            );
         }
     }
 

@@ -13,11 +13,8 @@ export class Instruments {
     #shown = -Infinity;
     /** @type {Map<string, HTMLElement>} */
     #values = new Map();
-    #unit;
 
-    /** @param {string | null} unit The unit of length and time. */
-    constructor(unit) {
-        this.#unit = unit ? ` ${unit}` : "";
+    constructor() {
         for (const name of [words.beta, words.gamma, words.properTime, words.sceneTime, words.distance]) {
             const value = element("dd", "reading");
             this.element.append(element("dt", "quantity", name), value);
@@ -40,9 +37,9 @@ export class Instruments {
         const distance = Math.hypot(...moment.position.map((part, axis) => part - start[axis]));
         this.#write(words.beta, betaText(rapidity));
         this.#write(words.gamma, numberText(Math.cosh(rapidity)));
-        this.#write(words.properTime, numberText(moment.properTime) + this.#unit);
-        this.#write(words.sceneTime, numberText(moment.time) + this.#unit);
-        this.#write(words.distance, numberText(distance) + this.#unit);
+        this.#write(words.properTime, numberText(moment.properTime));
+        this.#write(words.sceneTime, numberText(moment.time));
+        this.#write(words.distance, numberText(distance));
     }
 
     /**

@@ -21,7 +21,10 @@ export class Layout {
         this.#canvas = canvas;
         this.#observer = observer;
         this.#outside = outside;
-        for (const [element, label] of /** @type {[HTMLElement, string]} */ ([[observer, words.observerView], [outside, words.outsideView]])) {
+        for (const [element, label] of /** @type {[HTMLElement, string][]} */ ([
+            [observer, words.observerView],
+            [outside, words.outsideView],
+        ])) {
             element.setAttribute("aria-label", label);
             const caption = document.createElement("p");
             caption.className = "caption";

@@ -76,7 +76,9 @@ export class Panel {
         );
         store.subscribe(["paused"], (state) => paused.show(state.paused));
         store.subscribe(["steering"], (state) => steering.show(state.steering));
-        store.subscribe(["timeScale"], (state) => pace.show(Math.round(4 * Math.log2(state.timeScale / timeScale)) / 4));
+        store.subscribe(["timeScale"], (state) =>
+            pace.show(Math.round(4 * Math.log2(state.timeScale / timeScale)) / 4),
+        );
         const film = hasFilm ? [button(words.film, actions.playFilm)] : [];
         return group(words.flying, [
             paused.field,
@@ -107,7 +109,14 @@ export class Panel {
         store.subscribe(["ghostContracted"], (state) => contracted.show(state.ghostContracted));
         store.subscribe(["diagram"], (state) => diagram.show(state.diagram));
         store.subscribe(["fieldOfViewDeg"], (state) => fov.show(Math.round(state.fieldOfViewDeg)));
-        return group(words.picture, [layout.field, fov.field, model.field, rest.field, contracted.field, diagram.field]);
+        return group(words.picture, [
+            layout.field,
+            fov.field,
+            model.field,
+            rest.field,
+            contracted.field,
+            diagram.field,
+        ]);
     }
 
     /** @param {import("../state.js").Store} store */

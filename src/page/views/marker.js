@@ -10,7 +10,10 @@ const COLOR = "#ff5c4d";
 export function observerMarker() {
     const material = new MeshBasicMaterial({ color: COLOR });
     const ball = new Mesh(new SphereGeometry(0.5, 24, 16), material);
-    const shaft = new Mesh(new CylinderGeometry(0.12, 0.12, 1.6, 12).rotateX(-Math.PI / 2).translate(0, 0, -1.2), material);
+    const shaft = new Mesh(
+        new CylinderGeometry(0.12, 0.12, 1.6, 12).rotateX(-Math.PI / 2).translate(0, 0, -1.2),
+        material,
+    );
     const head = new Mesh(new ConeGeometry(0.36, 0.9, 16).rotateX(-Math.PI / 2).translate(0, 0, -2.4), material);
     const group = new Group().add(ball, shaft, head);
     for (const part of group.children) {

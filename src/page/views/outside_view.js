@@ -29,8 +29,15 @@ export class OutsideView {
         this.camera.layers.enableAll();
         this.#controls = new OrbitControls(this.#orbit, element);
         this.#controls.enableDamping = false;
-        this.#controls.listenToKeyEvents(element);
         this.#orbit.position.copy(FIRST_DIRECTION);
+    }
+
+    /**
+     * Calls a listener where the camera has moved.
+     * @param {() => void} listener
+     */
+    onChange(listener) {
+        this.#controls.addEventListener("change", listener);
     }
 
     /**

@@ -67,7 +67,11 @@ export class Views {
      * @param {number} height
      */
     resize(width, height) {
-        this.renderer.setSize(width, height, false);
+        const ratio = this.renderer.getPixelRatio();
+        const { domElement } = this.renderer;
+        if (domElement.width !== Math.floor(width * ratio) || domElement.height !== Math.floor(height * ratio)) {
+            this.renderer.setSize(width, height, false);
+        }
     }
 
     /**
@@ -92,7 +96,12 @@ export class Views {
         this.#world.update(moment, this.#sharpness(rectangles));
         this.renderer.setScissorTest(true);
         if (rectangles.observer) {
-            Object.assign(this.observer, { fov: this.fieldOfViewDeg, aspect: aspectOf(rectangles.observer), near: depths[0], far: depths[1] });
+            Object.assign(this.observer, {
+                fov: this.fieldOfViewDeg,
+                aspect: aspectOf(rectangles.observer),
+                near: depths[0],
+                far: depths[1],
+            });
             this.observer.updateProjectionMatrix();
             this.#draw(this.observer, rectangles.observer, 0);
         }
@@ -102,6 +111,16 @@ export class Views {
             this.#marker.scale.setScalar(MARKER_SIZE * Math.hypot(...this.outside.place3));
             this.#draw(this.outside.camera, rectangles.outside, 1);
         }
+    }
+
+    /**
+     * The canvas as a picture; to be asked for right after it was drawn.
+     * @returns {Promise<Blob>}
+     */
+    picture() {
+        return new Promise((resolve, reject) => {
+            this.renderer.domElement.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture"))));
+        });
     }
 
     /**

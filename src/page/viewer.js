@@ -1,0 +1,315 @@
+/** The page at work: the parts put together, and the loop of frames. */
+
+import { Gamepads } from "./controls/gamepad.js";
+import { Keyboard } from "./controls/keyboard.js";
+import { rotationOfLook, turnedLook } from "./controls/look.js";
+import { mouseLook } from "./controls/mouse.js";
+import { Pilot } from "./controls/pilot.js";
+import { Touch } from "./controls/touch.js";
+import { setRapidity, velocityOf } from "./spacetime/moment.js";
+import { firstState, Store } from "./state.js";
+import { words } from "./texts.js";
+import { copy, save } from "./ui/clipboard.js";
+import { exportCommand, renderCommand } from "./ui/command.js";
+import { Diagram } from "./ui/diagram.js";
+import { FilmBar } from "./ui/film_bar.js";
+import { Help } from "./ui/help.js";
+import { Instruments } from "./ui/instruments.js";
+import { Layout } from "./ui/layout.js";
+import { rampLegend } from "./ui/legend.js";
+import { readLink, writeLink } from "./ui/link.js";
+import { Panel } from "./ui/panel.js";
+import { Shell } from "./ui/shell.js";
+import { Toast } from "./ui/toast.js";
+import { Views } from "./views/views.js";
+
+/** A screen narrower than this, in CSS pixels, has the panel closed at first. */
+const WIDE = 900;
+
+/** The widest and the narrowest vertical field of view in degrees. */
+const WIDEST = 150;
+const NARROWEST = 2;
+
+/** Milliseconds between two writings of the frame's times. */
+const FRAMES_KEPT = 600;
+
+export class Viewer {
+    store;
+    views;
+    world;
+    /** Milliseconds that the last frames took outside the graphics processor. */
+    frameTimes = new Float64Array(FRAMES_KEPT);
+    frames = 0;
+
+    #data;
+    #pilot;
+    #layout;
+    #instruments;
+    #panel;
+    #diagram;
+    #filmBar;
+    #toast = new Toast();
+    #last = 0;
+    #isStale = true;
+
+    /**
+     * @param {import("./data.js").PageData} data
+     * @param {import("./surface/world.js").World} world With its meshes loaded.
+     * @param {{ canvas: HTMLCanvasElement, observer: HTMLElement, outside: HTMLElement, root: HTMLElement }} page
+     */
+    constructor(data, world, page) {
+        this.#data = data;
+        this.world = world;
+        this.views = new Views(page.canvas, world, page.outside, { background: data.background, size: world.size });
+        this.#layout = new Layout(page.canvas, page.observer, page.outside);
+        const shell = new Shell(page.root, data.title, {
+            onPanel: () => shell.showPanel(!document.body.classList.contains("with-panel")),
+            onHelp: () => this.store.change({ help: !this.store.state.help }),
+        });
+        shell.showPanel(globalThis.innerWidth >= WIDE);
+
+        /** @param {import("./controls/input.js").Action} action */
+        const act = (action) => this.#act(action);
+        this.#pilot = new Pilot(data, world.size, [
+            new Keyboard(globalThis.window, act),
+            new Gamepads(() => navigator.getGamepads?.() ?? [], act),
+            new Touch(shell.thrust, shell.turn, shell.brake),
+        ]);
+        this.#pilot.reset();
+        const { film } = this.#pilot;
+        const link = readLink(location.hash, data.observer);
+        this.store = new Store({
+            ...firstState(data, this.#pilot.timeScale),
+            look: lookAt(data.camera.look),
+            film: film.isLong && !link.moment,
+            ...link.state,
+        });
+        this.#pilot.moment = link.moment ?? film.moment;
+        this.#look(page.observer);
+
+        this.#instruments = new Instruments();
+        this.#panel = new Panel(
+            this.store,
+            {
+                reset: () => this.#act("reset"),
+                playFilm: () => this.#playFilm(),
+                setRapidity: (rapidity) => {
+                    this.store.change({ film: false });
+                    this.moment = setRapidity(this.moment, rapidity);
+                },
+                copyLink: () =>
+                    this.#copy(`${location.href.split("#")[0]}#${writeLink(this.moment, this.store.state)}`),
+                copyRender: () => this.#copy(this.renderCommand()),
+                copyExport: () => this.#copy(exportCommand(this.#data, this.moment, this.store.state)),
+                savePicture: () => this.#savePicture(),
+            },
+            { timeScale: this.#pilot.timeScale, hasFilm: film.isLong, extra: [] },
+        );
+        this.#filmBar = film.isLong ? this.#newFilmBar() : null;
+        this.#diagram = new Diagram(shell.diagram, data.objects, world.size);
+        const help = new Help(() => this.store.change({ help: false }));
+        const legend = rampLegend(data.colors.ramp);
+        shell.dashboard.append(this.#instruments.element, ...(this.#filmBar ? [this.#filmBar.element] : []), legend);
+        page.root.append(this.#panel.element, help.element, this.#toast.element);
+
+        this.#subscribe(shell, help, legend);
+        this.#greet(page.canvas);
+        this.views.outside.onChange(() => this.#makeStale());
+        new ResizeObserver(() => this.#makeStale()).observe(page.canvas);
+        this.#frameOutside();
+    }
+
+    /** What the observer is now. */
+    get moment() {
+        return this.#pilot.moment;
+    }
+
+    set moment(moment) {
+        this.#pilot.moment = moment;
+        this.#makeStale();
+    }
+
+    /** Begins to draw, frame after frame. */
+    start() {
+        this.views.renderer.setAnimationLoop((now) => this.frame(now));
+    }
+
+    /**
+     * Flies and draws a frame.
+     * @param {number} now In milliseconds.
+     */
+    frame(now) {
+        const begun = performance.now();
+        const { state } = this.store;
+        const before = this.moment;
+        if (this.#pilot.frame((now - this.#last) / 1000, state)) {
+            this.store.change({ film: false, paused: false });
+        }
+        this.#last = now;
+        if (state.film && this.#pilot.film.isAtEnd && !state.paused) {
+            this.store.change({ paused: true });
+        }
+        if (this.moment !== before || this.#isStale || this.views.renderer.xr.isPresenting) {
+            this.#isStale = false;
+            this.drawNow(now);
+        }
+        this.frameTimes[this.frames % FRAMES_KEPT] = performance.now() - begun;
+        this.frames += 1;
+    }
+
+    /**
+     * Draws the moment.
+     * @param {number} [now] In milliseconds.
+     */
+    drawNow(now = performance.now()) {
+        const { width, height, rectangles } = this.#layout.place();
+        this.views.resize(width, height);
+        this.views.draw(this.moment, rectangles);
+        this.#instruments.show(this.moment, this.#data.observer.position, now);
+        this.#panel.showSpeed(velocityOf(this.moment).rapidity);
+        this.#filmBar?.show();
+        this.#diagram.record(this.moment);
+        if (this.store.state.diagram) {
+            this.#diagram.show(this.moment, now);
+        }
+    }
+
+    /** The command line that draws the observer's view of this moment. */
+    renderCommand() {
+        const { rectangles } = this.#layout.place();
+        const ratio = this.views.renderer.getPixelRatio();
+        const { width, height } = rectangles.observer ?? { width: 1280, height: 720 };
+        return renderCommand(this.#data, this.moment, this.store.state, {
+            width: width * ratio,
+            height: height * ratio,
+        });
+    }
+
+    #makeStale() {
+        this.#isStale = true;
+    }
+
+    /**
+     * @param {Shell} shell
+     * @param {Help} help
+     * @param {HTMLElement} legend
+     */
+    #subscribe(shell, help, legend) {
+        const { store, world, views } = this;
+        store.subscribe(["layout"], (state) => this.#layout.show(state.layout));
+        store.subscribe(["model", "doppler", "searchlight", "exposure"], (state) => world.setLook(state.model, state));
+        store.subscribe(["ghostAtRest"], (state) => world.setGhost("rest", state.ghostAtRest));
+        store.subscribe(["ghostContracted"], (state) => world.setGhost("contracted", state.ghostContracted));
+        store.subscribe(["fieldOfViewDeg"], (state) => {
+            views.fieldOfViewDeg = state.fieldOfViewDeg;
+        });
+        store.subscribe(["look"], (state) => views.look(rotationOfLook(state.look)));
+        store.subscribe(["help"], (state) => help.show(state.help));
+        store.subscribe(["diagram"], (state) => {
+            shell.diagram.hidden = !state.diagram;
+        });
+        store.subscribe(["doppler"], (state) => {
+            legend.hidden = state.doppler !== "ramp";
+        });
+        store.subscribe(["film", "paused"], (state) => {
+            if (this.#filmBar) {
+                this.#filmBar.element.hidden = !state.film;
+                this.#filmBar.playing.show(!state.paused);
+            }
+        });
+        store.subscribe(
+            ["layout", "model", "doppler", "searchlight", "exposure", "ghostAtRest", "ghostContracted"],
+            () => this.#makeStale(),
+        );
+        store.subscribe(["fieldOfViewDeg", "look", "diagram", "paused", "film"], () => this.#makeStale());
+    }
+
+    /** @param {HTMLElement} element The element over the observer's view. */
+    #look(element) {
+        const { store } = this;
+        mouseLook(element, {
+            fieldOfViewDeg: () => store.state.fieldOfViewDeg,
+            turn: (change) => store.change({ look: turnedLook(store.state.look, change) }),
+            center: () => store.change({ look: [0, 0] }),
+            zoom: (factor) => {
+                const next = store.state.fieldOfViewDeg * factor;
+                store.change({ fieldOfViewDeg: Math.min(Math.max(next, NARROWEST), WIDEST) });
+            },
+        });
+    }
+
+    /** @param {import("./controls/input.js").Action} action */
+    #act(action) {
+        const { store } = this;
+        if (action === "pause") {
+            this.#pause(!store.state.paused);
+        } else if (action === "help") {
+            store.change({ help: !store.state.help });
+        } else {
+            this.#pilot.reset();
+            this.#diagram.clear();
+            store.change({ paused: false, look: lookAt(this.#data.camera.look), film: this.#pilot.film.isLong });
+            this.#makeStale();
+        }
+    }
+
+    /** @param {boolean} isPaused */
+    #pause(isPaused) {
+        if (!isPaused && this.store.state.film && this.#pilot.film.isAtEnd) {
+            this.#pilot.film.seek(this.#pilot.film.from);
+        }
+        this.store.change({ paused: isPaused });
+    }
+
+    #playFilm() {
+        this.#pilot.film.seek(this.#pilot.film.from);
+        this.store.change({ film: true, paused: false });
+    }
+
+    #newFilmBar() {
+        const { film } = this.#pilot;
+        return new FilmBar(film, this.#data.steps, {
+            play: (isPlaying) => this.#pause(!isPlaying),
+            seek: (properTime) => {
+                film.seek(properTime);
+                this.store.change({ paused: true });
+                this.moment = film.moment;
+            },
+        });
+    }
+
+    /** Says how to begin, and what the page does not show. @param {HTMLCanvasElement} canvas */
+    #greet(canvas) {
+        const isTouch = matchMedia("(pointer: coarse)").matches;
+        this.#toast.show(this.#data.lamps > 0 ? words.noLamps : isTouch ? words.hintTouch : words.hint, 8000);
+        canvas.addEventListener("webglcontextlost", () => this.#toast.show(words.contextLost, 60_000));
+        canvas.addEventListener("webglcontextrestored", () => {
+            this.#toast.show(words.contextBack);
+            this.#makeStale();
+        });
+    }
+
+    #frameOutside() {
+        const { middle, radius } = this.world.seenBall(this.moment);
+        this.views.outside.frame(middle, radius);
+    }
+
+    /** @param {string} text */
+    async #copy(text) {
+        this.#toast.show((await copy(text)) ? words.copied : words.notCopied);
+    }
+
+    async #savePicture() {
+        this.drawNow();
+        save(await this.views.picture(), "photosurface.png");
+    }
+}
+
+/**
+ * The turn of the head that looks in a direction of the own axes.
+ * @param {import("./spacetime/vector.js").Vec3} direction
+ * @returns {[number, number]}
+ */
+function lookAt([x, y, z]) {
+    return [Math.atan2(-x, -z), Math.asin(Math.min(Math.max(y, -1), 1))];
+}
