@@ -5,7 +5,8 @@ import { test } from "node:test";
 import { Controls, thrustFor, timeScaleFor } from "../../src/page/controls/controls.js";
 import { Film } from "../../src/page/controls/film.js";
 import { fly } from "../../src/page/controls/flying.js";
-import { Gamepads, inputOfPad, outsideDeadZone } from "../../src/page/controls/gamepad.js";
+import { Gamepads, inputOfPad, outsideDeadZone, padsOf } from "../../src/page/controls/gamepad.js";
+import { Hands } from "../../src/page/controls/hands.js";
 import { noInput, sumOfInputs } from "../../src/page/controls/input.js";
 import { Keyboard } from "../../src/page/controls/keyboard.js";
 import { directionOfLook, rotationOfLook, turnedLook } from "../../src/page/controls/look.js";
@@ -140,6 +141,22 @@ test("a gamepad has a dead zone and its whole way", () => {
         ).read(),
         noInput(),
     );
+});
+
+test("hands in virtual reality fly", () => {
+    const up = { value: 0, pressed: false };
+    const down = { value: 1, pressed: true };
+    const left = { handedness: "left", gamepad: { axes: [0, 0, 0, -1], buttons: [down, up] } };
+    const right = { handedness: "right", gamepad: { axes: [1, 0], buttons: [up, down] } };
+    const expected = { thrust: 1, yaw: -1, pitch: 0, roll: 0, brake: true, strong: true };
+    assert.deepEqual(new Hands(() => [left, right, { handedness: "none" }]).read(), expected);
+    assert.deepEqual(new Hands(() => []).read(), noInput());
+    const denied = {
+        getGamepads: () => {
+            throw new Error("denied");
+        },
+    };
+    assert.deepEqual([padsOf({}), padsOf(denied)], [[], []]);
 });
 
 test("sticks follow one finger and spring back", () => {
