@@ -5,10 +5,11 @@ import { test } from "node:test";
 import { Controls, thrustFor, timeScaleFor } from "../../src/page/controls/controls.js";
 import { Film } from "../../src/page/controls/film.js";
 import { fly } from "../../src/page/controls/flying.js";
-import { Gamepads, inputOfPad, outsideDeadZone } from "../../src/page/controls/gamepad.js";
+import { Gamepads, inputOfPad, outsideDeadZone, padsOf } from "../../src/page/controls/gamepad.js";
+import { Hands } from "../../src/page/controls/hands.js";
 import { noInput, sumOfInputs } from "../../src/page/controls/input.js";
 import { Keyboard } from "../../src/page/controls/keyboard.js";
-import { directionOfLook, rotationOfLook, turnedLook } from "../../src/page/controls/look.js";
+import { directionOfLook, lookOf, rotationOfLook, turnedLook } from "../../src/page/controls/look.js";
 import { mouseLook } from "../../src/page/controls/mouse.js";
 import { Stick, Touch } from "../../src/page/controls/touch.js";
 import { headingOf, momentOf, velocityOf } from "../../src/page/spacetime/moment.js";
@@ -142,6 +143,22 @@ test("a gamepad has a dead zone and its whole way", () => {
     );
 });
 
+test("hands in virtual reality fly", () => {
+    const up = { value: 0, pressed: false };
+    const down = { value: 1, pressed: true };
+    const left = { handedness: "left", gamepad: { axes: [0, 0, 0, -1], buttons: [down, up] } };
+    const right = { handedness: "right", gamepad: { axes: [1, 0], buttons: [up, down] } };
+    const expected = { thrust: 1, yaw: -1, pitch: 0, roll: 0, brake: true, strong: true };
+    assert.deepEqual(new Hands(() => [left, right, { handedness: "none" }]).read(), expected);
+    assert.deepEqual(new Hands(() => []).read(), noInput());
+    const denied = {
+        getGamepads: () => {
+            throw new Error("denied");
+        },
+    };
+    assert.deepEqual([padsOf({}), padsOf(denied)], [[], []]);
+});
+
 test("sticks follow one finger and spring back", () => {
     const [left, right, brake] = [element(), element(), element()];
     const touch = new Touch(left, right, brake);
@@ -196,6 +213,22 @@ test("a head turns all around but not over", () => {
     assert.deepEqual(directionOfLook([0, 0]), [0, 0, -1]);
     near(directionOfLook([Math.PI / 2, 0]), [-1, 0, 0], 1e-15);
     near(turnedLook([3, 0], [0.5, 9]), [3.5 - 2 * Math.PI, (89 / 180) * Math.PI], 1e-15);
+    for (const look of [
+        [0, 0],
+        [1, 0.5],
+        [-3, -1.5],
+        [2, 0],
+    ]) {
+        near(lookOf(directionOfLook(look)), look, 1e-14);
+    }
+    assert.deepEqual(
+        [lookOf([0, -2, 0]), lookOf([0, 2, 0])],
+        [
+            [0, -Math.PI / 2],
+            [0, Math.PI / 2],
+        ],
+    );
+    assert.deepEqual(lookOf([0, 0, -1]), [0, 0]);
     const [x, y, z, w] = rotationOfLook([1, 0.5]);
     assert.ok(Math.abs(Math.hypot(x, y, z, w) - 1) < 1e-15);
 });
@@ -205,6 +238,7 @@ test("engines start and stop smoothly, and then the observer coasts", () => {
     const controls = new Controls(thrustFor(20), [device, { read: noInput }]);
     assert.equal(timeScaleFor(20), 1);
     assert.equal(timeScaleFor(20, 4), 0.5);
+    assert.equal(timeScaleFor(20, 400), 5);
     device.input = { ...noInput(), thrust: 1, yaw: 1 };
     const thrusts = Array.from({ length: 120 }, () => -controls.read(FRAME, 1).acceleration[2]);
     assert.ok(thrusts[0] > 0 && thrusts[0] < 0.2 * thrustFor(20));
@@ -330,6 +364,7 @@ test("a film plays, stops anywhere, and is flown on from", () => {
     assert.deepEqual([film.from, film.to, film.properTime], [-1, 3, -1]);
     film.play(3);
     assert.equal(film.moment.properTime, 2);
+    assert.equal(film.moment, film.moment);
     near([velocityOf(film.moment).rapidity], [2], 1e-14);
     const next = fly(film.moment, command({ acceleration: [0, 0, 1] }), "free", 2);
     near([velocityOf(next).rapidity, next.properTime], [0, 4], 1e-14);

@@ -3,7 +3,15 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Flight, momentOfFlight } from "../../src/page/spacetime/flight.js";
-import { advance, advanceCoordinated, coast, momentOf, setBeta, velocityOf } from "../../src/page/spacetime/moment.js";
+import {
+    advance,
+    advanceCoordinated,
+    coast,
+    headingOf,
+    momentOf,
+    setBeta,
+    velocityOf,
+} from "../../src/page/spacetime/moment.js";
 import { axes, inverse, multiply } from "../../src/page/spacetime/spinor.js";
 import { viewOf } from "../../src/page/spacetime/view.js";
 import { momentsOf, numbers, quaternionFrom, vectorFrom } from "./program.mjs";
@@ -157,10 +165,19 @@ test("many frames are one segment, also beside something as fast", () => {
 test("after hours of frames the frame is a Lorentz transformation still", () => {
     let moment = momentOf(observer({ rapidity: 14, direction: [1, 2, 3] }));
     const next = numbers(5);
-    for (let frame = 0; frame < 200_000; frame++) {
-        const { rapidity } = velocityOf(moment);
-        const [x, y, z] = vectorFrom(next, 3);
-        moment = advance(moment, [x, y, rapidity > 14 ? 0 : z], vectorFrom(next, 5), 1 / 60);
+    let [acceleration, turnRate] = [
+        [0, 0, 0],
+        [0, 0, 0],
+    ];
+    for (let frame = 0; frame < 1_000_000; frame++) {
+        if (frame % 100 === 0) {
+            // Up to gamma 1e6 and back.
+            const heading = headingOf(moment) ?? [0, 0, 0];
+            const isFast = velocityOf(moment).rapidity > 10;
+            acceleration = isFast ? heading.map((part) => part * -2) : vectorFrom(next, 3);
+            turnRate = isFast ? [0, 0, 0] : vectorFrom(next, 5);
+        }
+        moment = advance(moment, acceleration, turnRate, 1 / 60);
     }
     const determinant = multiply(moment.frame, inverse(moment.frame));
     determinant[0] -= 1;
@@ -170,6 +187,18 @@ test("after hours of frames the frame is a Lorentz transformation still", () => 
         determinant.every((part) => Math.abs(part) < allowed),
         `${determinant}`,
     );
+});
+
+test("at speeds of which no digits are left flights stay what they are", () => {
+    for (const rapidity of [40, 100, 350]) {
+        let moment = momentOf(observer({ rapidity, direction: [1, 2, 3], orientation: [0, 0.6, 0, 0.8] }));
+        for (let frame = 0; frame < 600; frame++) {
+            moment = advance(moment, [0, 0, 0], [0, 0.1, 0], 1 / 60);
+        }
+        assert.ok(Math.abs(velocityOf(moment).rapidity - rapidity) < 1e-9 * rapidity, `${velocityOf(moment).rapidity}`);
+        const still = viewOf(moment, { position: [1, 2, 3], rapidity: 0, direction: [1, 0, 0] });
+        assert.ok([...still.offset, ...still.direction, ...still.rotation].every(Number.isFinite));
+    }
 });
 
 test("no threshold shows between the types of flight", () => {

@@ -3,8 +3,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { momentOfFlight } from "../../src/page/spacetime/flight.js";
+import { advance, momentOf, observerOf } from "../../src/page/spacetime/moment.js";
 import { rotate } from "../../src/page/spacetime/quaternion.js";
-import { cross, dot, length, scaled, subtract, sum } from "../../src/page/spacetime/vector.js";
+import { cross, dot, length, scaled, subtract, sum, unit } from "../../src/page/spacetime/vector.js";
 import { viewOf } from "../../src/page/spacetime/view.js";
 import { numbers, quaternionFrom, vectorFrom, verticesSeen } from "./program.mjs";
 
@@ -104,4 +105,52 @@ test("so are objects as fast as the observer, at gamma 1e6", () => {
         largest = Math.max(largest, sees(start, flight, bodies, 2 * next(), next));
     }
     assert.ok(largest < 1e-9, `${largest}`);
+});
+
+test("so is something as fast that is near at the end of a long flight", () => {
+    const next = numbers(37);
+    let largest = 0;
+    for (let round = 0; round < 12; round++) {
+        const start = startFrom(next, 0, [1, 0, 0]);
+        const thrust = scaled(unit(vectorFrom(next), [1, 0, 0]), 14 / 30);
+        const turn = { ...segmentsFrom(next, 0.5)[0], proper_time: 5 };
+        const straight = { proper_time: 30, acceleration: thrust, turn_rate: [0, 0, 0], steer: "free" };
+        const flight = round % 2 === 0 ? [straight] : [turn, straight, turn];
+        const time = round % 2 === 0 ? 30 : 36 + 3 * next();
+        const { position, rapidity, direction, time: sceneTime } = observerOf(momentOfFlight(start, flight, time));
+        assert.ok(rapidity > 12, `${rapidity}`);
+        const velocity = scaled(direction, Math.tanh(rapidity));
+        const body = {
+            ...bodyFrom(next, rapidity, direction),
+            position: subtract(position, scaled(velocity, sceneTime)),
+        };
+        largest = Math.max(largest, sees(start, flight, [body], time, next));
+    }
+    // The way there was magnified by `gamma`, and with it the rounding of both flights.
+    assert.ok(largest < 5e-8, `${largest}`);
+});
+
+test("a long flight leads beside something fast in one segment as in a thousand", () => {
+    const next = numbers(39);
+    for (let round = 0; round < 6; round++) {
+        const start = momentOf(startFrom(next, 0, [1, 0, 0]));
+        const thrust = scaled(unit(vectorFrom(next), [1, 0, 0]), 14 / 30);
+        const turnRate = round % 2 === 0 ? [0, 0, 0] : vectorFrom(next, 0.02);
+        const [once, often] = [1, 1000].map((count) => {
+            let moment = start;
+            for (let part = 0; part < count; part++) {
+                moment = advance(moment, thrust, turnRate, 30 / count);
+            }
+            return moment;
+        });
+        const { position, rapidity, direction, time } = observerOf(once);
+        assert.ok(rapidity > 13);
+        const beside = {
+            rapidity,
+            direction,
+            position: subtract(position, scaled(direction, Math.tanh(rapidity) * time)),
+        };
+        const gap = length(subtract(viewOf(once, beside).offset, viewOf(often, beside).offset));
+        assert.ok(gap < 5e-9, `${gap}`);
+    }
 });

@@ -14,8 +14,9 @@ const NOTHING = 1e-3;
 /** Seconds in which light crosses a scene. */
 const CROSSING_SECONDS = 20;
 
-/** Seconds that the flight of a scene takes at least. */
+/** Seconds that the film of a scene takes at least, and in which light crosses the scene at least meanwhile. */
 const FILM_SECONDS = 8;
+const FASTEST_CROSSING_SECONDS = 4;
 
 /** Rapidity that the engines give in a second. */
 const RAPIDITY_RATE = 0.4;
@@ -30,20 +31,21 @@ const TURN_RATE = 0.8;
 /**
  * Proper time of the observer for each second, so that a scene is neither crossed in no time nor a long journey.
  * @param {number} sizeOfScene
- * @param {number} durationOfFlight Proper time that the scene's own flight takes; 0 for none.
+ * @param {number} durationOfFilm Proper time that the scene's own flight takes; 0 for none.
  */
-export function timeScaleFor(sizeOfScene, durationOfFlight = 0) {
-    const scale = sizeOfScene / CROSSING_SECONDS;
-    return durationOfFlight > 0 ? Math.min(scale, durationOfFlight / FILM_SECONDS) : scale;
+export function timeScaleFor(sizeOfScene, durationOfFilm = 0) {
+    return durationOfFilm > 0
+        ? Math.min(durationOfFilm / FILM_SECONDS, sizeOfScene / FASTEST_CROSSING_SECONDS)
+        : sizeOfScene / CROSSING_SECONDS;
 }
 
 /**
  * The acceleration of the engines with which flying through a scene of this size is pleasant.
  * @param {number} sizeOfScene
- * @param {number} durationOfFlight
+ * @param {number} durationOfFilm
  */
-export function thrustFor(sizeOfScene, durationOfFlight = 0) {
-    return RAPIDITY_RATE / timeScaleFor(sizeOfScene, durationOfFlight);
+export function thrustFor(sizeOfScene, durationOfFilm = 0) {
+    return RAPIDITY_RATE / timeScaleFor(sizeOfScene, durationOfFilm);
 }
 
 export class Controls {

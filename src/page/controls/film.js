@@ -9,6 +9,8 @@ export class Film {
     properTime;
     #observer;
     #segments;
+    /** @type {{ properTime: number, moment: Moment } | null} */
+    #shown = null;
 
     /**
      * @param {import("../spacetime/moment.js").Observer} observer
@@ -47,8 +49,12 @@ export class Film {
         this.seek(this.properTime + dTau);
     }
 
-    /** What the observer is now, from which one may fly on. @returns {Moment} */
+    /** What the observer is now, from which one may fly on: one object as long as the film stands still. */
     get moment() {
-        return momentOfFlight(this.#observer, this.#segments, this.properTime);
+        const { properTime } = this;
+        if (this.#shown?.properTime !== properTime) {
+            this.#shown = { properTime, moment: momentOfFlight(this.#observer, this.#segments, properTime) };
+        }
+        return this.#shown.moment;
     }
 }

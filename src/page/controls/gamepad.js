@@ -60,6 +60,20 @@ export function inputOfPad({ axes, buttons }) {
     return { input, look: [0 - lookX, 0 - lookY] };
 }
 
+/**
+ * The gamepads of a browser, none where it does not show them.
+ * @param {Partial<Navigator>} navigator
+ * @returns {readonly (Gamepad | null)[]}
+ */
+export function padsOf(navigator) {
+    try {
+        return navigator.getGamepads?.() ?? [];
+    } catch {
+        // A page may be denied them.
+        return [];
+    }
+}
+
 export class Gamepads {
     /**
      * Where the right stick turns the head.
@@ -72,7 +86,7 @@ export class Gamepads {
     #down = new Set();
 
     /**
-     * @param {() => readonly (Gamepad | null)[]} pads As `navigator.getGamepads` gives them.
+     * @param {() => readonly (Gamepad | null)[]} pads As {@link padsOf} gives them.
      * @param {(action: Action) => void} onAction
      */
     constructor(pads, onAction) {

@@ -26,6 +26,16 @@ export function directionOfLook(look) {
 }
 
 /**
+ * The turn of the head that looks in a direction of the own axes, of any length; straight up or down it is not turned aside.
+ * @param {Readonly<import("../spacetime/vector.js").Vec3>} direction
+ * @returns {Look}
+ */
+export function lookOf([x, y, z]) {
+    const aside = Math.hypot(x, z);
+    return [aside === 0 ? 0 : 0 - Math.atan2(x, -z), Math.atan2(y, aside)];
+}
+
+/**
  * The head turned further.
  * @param {Readonly<Look>} look
  * @param {Readonly<Look>} change

@@ -133,7 +133,9 @@ export function unimodular(spinor) {
     }
     // 1/sqrt(1 + d) = 1 - d/2 + 3 d^2/8 - ...
     const square = 0.375 * (real * real - imaginary * imaginary);
-    const root = scalar(1, -0.5 * real + square);
+    const sum = new Sum(1);
+    sum.add(-0.5 * real + square);
+    const root = scalar(sum.value, sum.rest);
     root[1] = -0.5 * imaginary + 0.75 * real * imaginary;
     return multiply(spinor, root);
 }

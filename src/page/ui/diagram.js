@@ -77,12 +77,13 @@ export class Diagram {
      * Draws the diagram, if the last drawing is a while ago.
      * @param {Moment} moment
      * @param {number} now In milliseconds.
+     * @returns {boolean} Whether the moment has been drawn.
      */
     show(moment, now) {
         const { clientWidth: width, clientHeight: height } = this.#canvas;
         const pen = this.#canvas.getContext("2d");
         if (now - this.#drawn < BETWEEN_MS || !pen || !this.#direction || width === 0 || height === 0) {
-            return;
+            return false;
         }
         this.#drawn = now;
         const ratio = globalThis.devicePixelRatio || 1;
@@ -92,6 +93,7 @@ export class Diagram {
         }
         pen.setTransform(ratio, 0, 0, ratio, 0, 0);
         draw(pen, { width, height }, this.#direction, this.history.events, moment, this.#bodies, this.#size);
+        return true;
     }
 }
 
