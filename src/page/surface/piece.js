@@ -19,8 +19,8 @@ import { vertexTable } from "./vertex_table.js";
 /** @typedef {import("./material.js").Defines} Defines */
 /** @typedef {import("../tessellation/edge_rule.js").Sharpness} Sharpness */
 
-/** The layers of three.js: what all views show, and what only the view from outside does. */
-export const OUTSIDE_LAYER = 1;
+/** The layer of three.js with what only the view from outside shows. Headsets have the layers 1 and 2, one for each eye. */
+export const OUTSIDE_LAYER = 3;
 
 /** So many vertices tell where a mesh is seen. */
 const MOST_PLACES = 100;

@@ -79,6 +79,8 @@ export class Views {
      * @param {import("../data.js").Quaternion} look From the camera's axes to the observer's own.
      */
     look(look) {
+        // A headset has moved it.
+        this.observer.position.set(0, 0, 0);
         this.observer.quaternion.set(...look);
     }
 
@@ -89,7 +91,7 @@ export class Views {
      */
     draw(moment, rectangles) {
         const orientation = orientationOf(moment);
-        const depths = /** @type {[number, number]} */ ([NEAR * this.#size, FAR * this.#size]);
+        const depths = this.#depths();
         if (rectangles.outside) {
             this.outside.place(orientation, aspectOf(rectangles.outside), depths);
         }
@@ -121,6 +123,30 @@ export class Views {
         return new Promise((resolve, reject) => {
             this.renderer.domElement.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture"))));
         });
+    }
+
+    /**
+     * Draws what the observer sees for the eyes of a headset, which place the camera.
+     * @param {Moment} moment
+     */
+    drawInHeadset(moment) {
+        const [near, far] = this.#depths();
+        const [eye] = this.renderer.xr.getCamera().cameras;
+        const pixels = (eye?.viewport?.w ?? 1000) * (eye?.projectionMatrix.elements[5] ?? 1);
+        this.#world.update(moment, {
+            observer: (2 * TOLERANCE_PX) / pixels,
+            outside: Infinity,
+            camera: this.outside.place3,
+            nearest: near,
+        });
+        this.#world.shared.fromOutside.value = 0;
+        Object.assign(this.observer, { near, far });
+        this.renderer.render(this.#scene, this.observer);
+    }
+
+    /** The nearest and the farthest depth. @returns {[number, number]} */
+    #depths() {
+        return [NEAR * this.#size, FAR * this.#size];
     }
 
     /**
