@@ -1,8 +1,8 @@
 /** The page at work: the parts put together, and the loop of frames. */
 
-import { Gamepads } from "./controls/gamepad.js";
+import { Gamepads, padsOf } from "./controls/gamepad.js";
 import { Keyboard } from "./controls/keyboard.js";
-import { rotationOfLook, turnedLook } from "./controls/look.js";
+import { lookOf, rotationOfLook, turnedLook } from "./controls/look.js";
 import { mouseLook } from "./controls/mouse.js";
 import { Pilot } from "./controls/pilot.js";
 import { Touch } from "./controls/touch.js";
@@ -22,6 +22,7 @@ import { Panel } from "./ui/panel.js";
 import { Shell } from "./ui/shell.js";
 import { Toast } from "./ui/toast.js";
 import { Views } from "./views/views.js";
+import { Vr } from "./vr/vr.js";
 
 /** A screen narrower than this, in CSS pixels, has the panel closed at first. */
 const WIDE = 900;
@@ -30,7 +31,10 @@ const WIDE = 900;
 const WIDEST = 150;
 const NARROWEST = 2;
 
-/** Milliseconds between two writings of the frame's times. */
+/** Radians that a gamepad turns the head by in a second. */
+const HEAD_RATE = 1.5;
+
+/** Frames whose times are kept. */
 const FRAMES_KEPT = 600;
 
 export class Viewer {
@@ -43,6 +47,8 @@ export class Viewer {
 
     #data;
     #pilot;
+    #gamepads;
+    #vr;
     #layout;
     #instruments;
     #panel;
@@ -51,6 +57,7 @@ export class Viewer {
     #toast = new Toast();
     #last = 0;
     #isStale = true;
+    #isFramed = false;
 
     /**
      * @param {import("./data.js").PageData} data
@@ -70,17 +77,20 @@ export class Viewer {
 
         /** @param {import("./controls/input.js").Action} action */
         const act = (action) => this.#act(action);
+        this.#vr = new Vr(this.views.renderer, navigator.xr, (reason) => this.#toast.show(reason));
+        this.#gamepads = new Gamepads(() => padsOf(navigator), act);
         this.#pilot = new Pilot(data, world.size, [
             new Keyboard(globalThis.window, act),
-            new Gamepads(() => navigator.getGamepads?.() ?? [], act),
+            this.#gamepads,
             new Touch(shell.thrust, shell.turn, shell.brake),
+            this.#vr,
         ]);
         this.#pilot.reset();
         const { film } = this.#pilot;
         const link = readLink(location.hash, data.observer);
         this.store = new Store({
             ...firstState(data, this.#pilot.timeScale),
-            look: lookAt(data.camera.look),
+            look: lookOf(data.camera.look),
             film: film.isLong && !link.moment,
             ...link.state,
         });
@@ -103,7 +113,7 @@ export class Viewer {
                 copyExport: () => this.#copy(exportCommand(this.#data, this.moment, this.store.state)),
                 savePicture: () => this.#savePicture(),
             },
-            { timeScale: this.#pilot.timeScale, hasFilm: film.isLong, extra: [] },
+            { timeScale: this.#pilot.timeScale, hasFilm: film.isLong, extra: [this.#vr.button] },
         );
         this.#filmBar = film.isLong ? this.#newFilmBar() : null;
         this.#diagram = new Diagram(shell.diagram, data.objects, world.size);
@@ -116,7 +126,6 @@ export class Viewer {
         this.#greet(page.canvas);
         this.views.outside.onChange(() => this.#makeStale());
         new ResizeObserver(() => this.#makeStale()).observe(page.canvas);
-        this.#frameOutside();
     }
 
     /** What the observer is now. */
@@ -142,14 +151,19 @@ export class Viewer {
         const begun = performance.now();
         const { state } = this.store;
         const before = this.moment;
-        if (this.#pilot.frame((now - this.#last) / 1000, state)) {
+        const last = this.#last;
+        this.#last = now;
+        if (this.#pilot.frame((now - last) / 1000, state)) {
             this.store.change({ film: false, paused: false });
         }
-        this.#last = now;
         if (state.film && this.#pilot.film.isAtEnd && !state.paused) {
             this.store.change({ paused: true });
         }
-        if (this.moment !== before || this.#isStale || this.views.renderer.xr.isPresenting) {
+        this.#turnHead((now - last) / 1000);
+        if (this.#vr.isPresenting) {
+            this.views.drawInHeadset(this.moment);
+            this.#isStale = true;
+        } else if (this.moment !== before || this.#isStale) {
             this.#isStale = false;
             this.drawNow(now);
         }
@@ -164,14 +178,21 @@ export class Viewer {
     drawNow(now = performance.now()) {
         const { width, height, rectangles } = this.#layout.place();
         this.views.resize(width, height);
+        if (rectangles.outside && !this.#isFramed) {
+            this.#isFramed = true;
+            this.views.outside.frame(
+                this.world.seenBall(this.moment),
+                rectangles.outside.width / rectangles.outside.height,
+            );
+        }
         this.views.draw(this.moment, rectangles);
-        this.#instruments.show(this.moment, this.#data.observer.position, now);
+        const isRead = this.#instruments.show(this.moment, this.#data.observer.position, now);
         this.#panel.showSpeed(velocityOf(this.moment).rapidity);
         this.#filmBar?.show();
         this.#diagram.record(this.moment);
-        if (this.store.state.diagram) {
-            this.#diagram.show(this.moment, now);
-        }
+        const isDrawn = !this.store.state.diagram || this.#diagram.show(this.moment, now);
+        // Readings are taken some times a second: the last ones are taken too.
+        this.#isStale ||= !isRead || !isDrawn;
     }
 
     /** The command line that draws the observer's view of this moment. */
@@ -248,7 +269,7 @@ export class Viewer {
         } else {
             this.#pilot.reset();
             this.#diagram.clear();
-            store.change({ paused: false, look: lookAt(this.#data.camera.look), film: this.#pilot.film.isLong });
+            store.change({ paused: false, look: lookOf(this.#data.camera.look), film: this.#pilot.film.isLong });
             this.#makeStale();
         }
     }
@@ -289,9 +310,16 @@ export class Viewer {
         });
     }
 
-    #frameOutside() {
-        const { middle, radius } = this.world.seenBall(this.moment);
-        this.views.outside.frame(middle, radius);
+    /**
+     * Turns the head as the right stick of a gamepad asks.
+     * @param {number} seconds
+     */
+    #turnHead(seconds) {
+        const [left, up] = this.#gamepads.look;
+        if (left !== 0 || up !== 0) {
+            const turn = HEAD_RATE * Math.min(seconds, 0.1);
+            this.store.change({ look: turnedLook(this.store.state.look, [left * turn, up * turn]) });
+        }
     }
 
     /** @param {string} text */
@@ -303,13 +331,4 @@ export class Viewer {
         this.drawNow();
         save(await this.views.picture(), "photosurface.png");
     }
-}
-
-/**
- * The turn of the head that looks in a direction of the own axes.
- * @param {import("./spacetime/vector.js").Vec3} direction
- * @returns {[number, number]}
- */
-function lookAt([x, y, z]) {
-    return [Math.atan2(-x, -z), Math.asin(Math.min(Math.max(y, -1), 1))];
 }

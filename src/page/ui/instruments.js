@@ -27,10 +27,11 @@ export class Instruments {
      * @param {import("../spacetime/moment.js").Moment} moment
      * @param {import("../spacetime/vector.js").Vec3} start Where the flight began.
      * @param {number} now In milliseconds.
+     * @returns {boolean} Whether it is shown.
      */
     show(moment, start, now) {
         if (now - this.#shown < BETWEEN_MS) {
-            return;
+            return false;
         }
         this.#shown = now;
         const { rapidity } = velocityOf(moment);
@@ -40,6 +41,7 @@ export class Instruments {
         this.#write(words.properTime, numberText(moment.properTime));
         this.#write(words.sceneTime, numberText(moment.time));
         this.#write(words.distance, numberText(distance));
+        return true;
     }
 
     /**

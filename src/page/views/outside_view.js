@@ -10,7 +10,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 const FIELD_OF_VIEW_DEG = 40;
 
 /** From where the photosurface is looked at first: obliquely from above, with the motion across the picture. */
-const FIRST_DIRECTION = new Vector3(1, 0.6, 0.35).normalize();
+const FIRST_DIRECTION = new Vector3(1, 0.9, 0.4).normalize();
 
 /**
  * A camera that moves around the photosurface. Its axes are those of the scene under a pure boost, so that nothing turns
@@ -42,12 +42,13 @@ export class OutsideView {
 
     /**
      * Looks at a ball from where the camera is now, so that all of it is in the picture.
-     * @param {Vec3} middle
-     * @param {number} radius
+     * @param {{ middle: Vec3, radius: number }} ball
+     * @param {number} aspect Width of the picture over its height.
      */
-    frame(middle, radius) {
+    frame({ middle, radius }, aspect) {
         const direction = this.#orbit.position.clone().sub(this.#controls.target).normalize();
-        const distance = (1.1 * radius) / Math.sin(((FIELD_OF_VIEW_DEG / 2) * Math.PI) / 180);
+        const half = Math.tan(((FIELD_OF_VIEW_DEG / 2) * Math.PI) / 180) * Math.min(aspect, 1);
+        const distance = radius / Math.sin(Math.atan(half));
         this.#controls.target.set(...middle);
         this.#orbit.position.copy(this.#controls.target).addScaledVector(direction, distance);
         this.#controls.update();

@@ -22,7 +22,7 @@ import { OutsideView } from "./outside_view.js";
 const TOLERANCE_PX = 0.3;
 
 /** The size of the marker as a part of the distance from which it is looked at. */
-const MARKER_SIZE = 0.03;
+const MARKER_SIZE = 0.02;
 
 /** The nearest and farthest depths, in sizes of the scene. */
 const NEAR = 1e-4;

@@ -3,15 +3,16 @@
  * of the room.
  */
 
+import { inputOfHands } from "../controls/hands.js";
 import { noInput } from "../controls/input.js";
 import { words } from "../texts.js";
-import { inputOfControllers } from "./controllers.js";
+import { button } from "../ui/fields.js";
 
 const MODE = "immersive-vr";
 
 export class Vr {
     /** Enters and leaves; hidden where there is no headset. */
-    button = document.createElement("button");
+    button = button("", () => this.#toggle());
     #renderer;
     #xr;
     #onFailure;
@@ -30,9 +31,7 @@ export class Vr {
         this.#onFailure = onFailure;
         renderer.xr.enabled = true;
         renderer.xr.setReferenceSpaceType("local");
-        this.button.type = "button";
         this.button.hidden = true;
-        this.button.addEventListener("click", () => this.#toggle());
         xr?.addEventListener?.("devicechange", () => this.#look());
         this.#show();
         this.#look();
@@ -45,7 +44,7 @@ export class Vr {
 
     /** What the controllers ask for. @returns {import("../controls/input.js").Input} */
     read() {
-        return this.#session ? inputOfControllers(this.#session.inputSources) : noInput();
+        return this.#session ? inputOfHands(this.#session.inputSources) : noInput();
     }
 
     /** Looks whether there is a headset. */
