@@ -59,6 +59,8 @@ export class Viewer {
     #last = 0;
     #isStale = true;
     #isFramed = false;
+    /** Whether the head follows what passes, as long as nobody turns it. */
+    #isFollowing = true;
 
     /**
      * @param {import("./data.js").PageData} data
@@ -162,6 +164,7 @@ export class Viewer {
             this.store.change({ paused: true });
         }
         this.#turnHead((now - last) / 1000);
+        this.#follow();
         if (this.#vr.isPresenting) {
             this.views.drawInHeadset(this.moment);
             this.#isStale = true;
@@ -252,7 +255,10 @@ export class Viewer {
         const { store } = this;
         mouseLook(element, {
             fieldOfViewDeg: () => store.state.fieldOfViewDeg,
-            turn: (change) => store.change({ look: turnedLook(store.state.look, change) }),
+            turn: (change) => {
+                this.#isFollowing = false;
+                store.change({ look: turnedLook(store.state.look, change) });
+            },
             center: () => store.change({ look: [0, 0] }),
             zoom: (factor) => {
                 const next = store.state.fieldOfViewDeg * factor;
@@ -271,6 +277,7 @@ export class Viewer {
         } else {
             this.#pilot.reset();
             this.#diagram.clear();
+            this.#isFollowing = true;
             store.change({ paused: false, look: lookOf(this.#data.camera.look), film: this.#pilot.film.isLong });
             this.#makeStale();
         }
@@ -320,6 +327,13 @@ export class Viewer {
             this.#toast.show(words.contextBack);
             this.#makeStale();
         });
+    }
+
+    /** Looks at what passes while the film of an observer who coasts is shown. */
+    #follow() {
+        if (this.#isFollowing && this.store.state.film && this.#data.flight.length === 0) {
+            this.store.change({ look: lookOf(this.world.middleOfSky(this.moment)) });
+        }
     }
 
     /**

@@ -9,7 +9,8 @@ export function readBack(page, most) {
 }
 
 function readBackInPage(most) {
-    const { world, views, drawNow } = globalThis.photosurface;
+    const viewer = globalThis.photosurface;
+    const { world, views } = viewer;
     const gl = views.renderer.getContext();
     const results = [];
     const variants = new Map();
@@ -137,7 +138,7 @@ function readBackInPage(most) {
         undo.push(() => delete gl[name]);
     }
     try {
-        drawNow();
+        viewer.drawNow();
     } finally {
         for (const each of undo) {
             each();

@@ -78,9 +78,11 @@ const FRAGMENT_CHUNKS = {
             outgoingLight = shown(lightOf(diffuseColor.rgb));
         #else
             vec2 reflected = headLight(Finish(metalnessFactor, roughnessFactor), normal, normalize(vViewPosition), open);
-            outgoingLight = shown(
-                lightOf(diffuseColor.rgb) * reflected.x + lightOf(vec3(1.0)) * reflected.y + lightOf(totalEmissiveRadiance)
-            );
+            vec3 light = lightOf(diffuseColor.rgb) * reflected.x + lightOf(vec3(1.0)) * reflected.y;
+            if (totalEmissiveRadiance != vec3(0.0)) {
+                light += lightOf(totalEmissiveRadiance);
+            }
+            outgoingLight = shown(light);
         #endif
         #include <opaque_fragment>`,
 };

@@ -16,7 +16,7 @@ import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import { blackBodyUniforms, colorUniforms, definesOf } from "../effects/colors.js";
 import { orientationOf } from "../spacetime/moment.js";
 import { rotate } from "../spacetime/quaternion.js";
-import { length, scaled, subtract, sum } from "../spacetime/vector.js";
+import { length, scaled, subtract, sum, unit } from "../spacetime/vector.js";
 import { viewOf } from "../spacetime/view.js";
 import { Piece } from "./piece.js";
 import { roundOf } from "./round.js";
@@ -80,17 +80,37 @@ export class World {
     }
 
     /**
+     * Where some places of all objects are seen, in the observer's own axes.
+     * @param {import("../spacetime/moment.js").Moment} moment
+     */
+    #seenPlaces(moment) {
+        return this.#objects.flatMap(({ object, pieces }) => {
+            const view = viewOf(moment, object);
+            return pieces.flatMap((piece) => piece.seenPlaces(view, this.#modelOf(object)));
+        });
+    }
+
+    /**
+     * The middle of the part of the sky in which objects are seen, as a unit vector in the observer's own axes.
+     * @param {import("../spacetime/moment.js").Moment} moment
+     * @returns {Vec3}
+     */
+    middleOfSky(moment) {
+        const directions = this.#seenPlaces(moment).map((place) => unit(place, [0, 0, 0]));
+        return unit(
+            directions.reduce((total, direction) => sum(total, direction), [0, 0, 0]),
+            [0, 0, -1],
+        );
+    }
+
+    /**
      * A ball that holds most of the photosurfaces, and the observer: in the axes of the scene under the observer's boost.
      * @param {import("../spacetime/moment.js").Moment} moment
      * @returns {{ middle: Vec3, radius: number }}
      */
     seenBall(moment) {
         const orientation = orientationOf(moment);
-        const seen = this.#objects.flatMap(({ object, pieces }) => {
-            const view = viewOf(moment, object);
-            return pieces.flatMap((piece) => piece.seenPlaces(view, this.#modelOf(object)));
-        });
-        const places = seen.map((place) => rotate(orientation, place));
+        const places = this.#seenPlaces(moment).map((place) => rotate(orientation, place));
         // What is drawn out far ahead would make all else small.
         places.sort((a, b) => length(a) - length(b));
         const kept = [/** @type {Vec3} */ ([0, 0, 0]), ...places.slice(0, Math.ceil(places.length * MOST_SEEN))];

@@ -2,8 +2,8 @@
 
 import { words } from "../texts.js";
 
-/** Narrower than this in CSS pixels, the views are one above the other. */
-const NARROW = 700;
+/** Where the page is narrower than this for its height, views beside each other would be too narrow. */
+const NARROW = 1.5;
 
 export class Layout {
     #canvas;
@@ -46,7 +46,7 @@ export class Layout {
      */
     place() {
         const { clientWidth: width, clientHeight: height } = this.#canvas;
-        const isNarrow = width < NARROW;
+        const isNarrow = width < NARROW * height;
         const whole = { x: 0, y: 0, width, height };
         /** @param {number} part */
         const half = (part) =>

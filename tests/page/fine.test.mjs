@@ -1,0 +1,118 @@
+/** Anywhere, at any speed: no hole in what is closed, and no facet that finer triangles would take away. */
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { momentOf } from "../../src/page/spacetime/moment.js";
+import { inBrowser, openPage, show, writePage } from "./browser.mjs";
+import { numbers, quaternionFrom, vectorFrom } from "./program.mjs";
+
+/** Half the side of the room, and how far from its middle the observer flies. */
+const ROOM = 30;
+const REACH = 28;
+
+const FLIGHTS = 200;
+
+/** A moment in this many is drawn with finer triangles too. */
+const EVERY = 8;
+
+/** How many times as fine. */
+const FINER = 4;
+
+/** Part of the pixels that finer triangles may change: those at outlines. */
+const MOST_CHANGED = 5e-3;
+
+/** The colour of what is behind everything: nothing in the scene is like it. */
+const NOTHING = "#ff00ff";
+
+const SCENE = {
+    observer: { position: [0, 0, 0] },
+    objects: [
+        { name: "room", shape: { box: { size: [2 * ROOM, 2 * ROOM, 2 * ROOM] } } },
+        { name: "ball", shape: { sphere: { radius: 4 } }, position: [8, 3, -10], velocity: { gamma: 2, direction: [0, 1, 0] } },
+        { name: "ring", shape: { torus: { major_radius: 5, minor_radius: 1.2 } }, position: [-9, -4, 6] },
+        { name: "crate", shape: { box: { size: [6, 4, 9] } }, position: [4, -12, 12], velocity: { beta: 0.6, direction: [1, 0, 1] } },
+        { name: "column", shape: { cylinder: { radius: 2, height: 20 } }, position: [-12, 0, -14] },
+    ],
+};
+
+/** Moments in the room: in all directions, slow and fast, some of them nearly at a wall. */
+function* moments() {
+    const next = numbers(17);
+    for (let flight = 0; flight < FLIGHTS; flight++) {
+        const position = vectorFrom(next, REACH);
+        if (flight % 3 === 0) {
+            position[flight % 9 / 3] = ROOM - 10 ** (-4 * next());
+        }
+        const rapidity = Math.acosh(20) * next();
+        const direction = vectorFrom(next);
+        yield momentOf({ time: 0, position, rapidity, direction, orientation: quaternionFrom(next) });
+    }
+}
+
+/** Draws now, some times as fine as usual; counts pixels in which the background shows, and those that differ from the last. */
+function drawInPage(finer) {
+    const viewer = globalThis.photosurface;
+    const { world, views } = viewer;
+    const update = world.update;
+    world.update = (moment, sharpness) =>
+        update.call(world, moment, {
+            ...sharpness,
+            observer: sharpness.observer / finer,
+            outside: sharpness.outside / finer,
+        });
+    // After many triangles, pictures are coarser for a while.
+    for (let settle = 0; settle < (finer > 1 ? 1 : 2); settle++) {
+        viewer.drawNow();
+    }
+    world.update = update;
+    const gl = views.renderer.getContext();
+    const { drawingBufferWidth: width, drawingBufferHeight: height } = gl;
+    const pixels = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    const last = globalThis.lastPixels ?? pixels;
+    let [holes, changed] = [0, 0];
+    for (let at = 0; at < pixels.length; at += 4) {
+        holes += (pixels[at] + pixels[at + 2]) / 2 - pixels[at + 1] > 16 ? 1 : 0;
+        changed += [0, 1, 2].some((k) => Math.abs(pixels[at + k] - last[at + k]) > 24) ? 1 : 0;
+    }
+    globalThis.lastPixels = pixels;
+    return { holes, changed: changed / (width * height) };
+}
+
+test("a flight through a closed room shows no hole and no facet", async (t) => {
+    await inBrowser(async (browser, folder) => {
+        const path = writePage(folder, SCENE, (html) => html.replace(/"background":"[^"]*"/, `"background":"${NOTHING}"`));
+        const { page, failures } = await openPage(browser, path, { width: 320, height: 240 });
+
+        // What a hole looks like: the room is not there.
+        await show(page, {}, momentOf({ time: 0, position: [0, 0, 0], rapidity: 0, direction: [0, 0, -1], orientation: [0, 0, 0, 1] }));
+        const [shown, taken] = await page.evaluate((source) => {
+            const draw = new Function(`return ${source}`)();
+            const [room] = globalThis.photosurface.world.group.children;
+            const shown = draw(1).holes;
+            room.visible = false;
+            const taken = draw(1).holes;
+            room.visible = true;
+            return [shown, taken];
+        }, drawInPage.toString());
+        assert.equal(shown, 0);
+        assert.ok(taken > 1000, `${taken} pixels of a scene without walls are background`);
+
+        let drawn = 0;
+        let worst = 0;
+        for (const moment of moments()) {
+            await show(page, {}, moment);
+            const { holes } = await page.evaluate(drawInPage, 1);
+            assert.equal(holes, 0, `${holes} pixels of background at ${JSON.stringify(moment)}`);
+            if (drawn % EVERY === 0) {
+                const { changed } = await page.evaluate(drawInPage, FINER);
+                assert.ok(changed <= MOST_CHANGED, `${changed} of the pixels change at ${JSON.stringify(moment)}`);
+                worst = Math.max(worst, changed);
+            }
+            drawn += 1;
+        }
+        assert.equal(drawn, FLIGHTS);
+        assert.deepEqual(failures, []);
+        t.diagnostic(`${drawn} moments; finer triangles change at most ${(100 * worst).toFixed(2)} % of the pixels`);
+    });
+});
