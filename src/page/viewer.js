@@ -35,6 +35,10 @@ const NARROWEST = 2;
 /** Radians that a gamepad turns the head by in a second. */
 const HEAD_RATE = 1.5;
 
+/** Things within this angle of a direction, in radians, are looked at as they pass, in such a field of view in degrees. */
+const PASSING_ANGLE = 0.8;
+const PASSING_FIELD_DEG = 40;
+
 /** Frames whose times are kept. */
 const FRAMES_KEPT = 600;
 
@@ -60,7 +64,7 @@ export class Viewer {
     #isStale = true;
     #isFramed = false;
     /** Whether the head follows what passes, as long as nobody turns it. */
-    #isFollowing = true;
+    #isFollowing;
 
     /**
      * @param {import("./data.js").PageData} data
@@ -91,10 +95,12 @@ export class Viewer {
         this.#pilot.reset();
         const { film } = this.#pilot;
         const link = readLink(location.hash, data.observer);
+        this.#isFollowing = this.#passes();
         this.store = new Store({
             ...firstState(data, this.#pilot.timeScale),
             look: lookOf(data.camera.look),
             film: film.isLong && !link.moment,
+            ...(this.#isFollowing && { fieldOfViewDeg: PASSING_FIELD_DEG }),
             ...link.state,
         });
         this.#pilot.moment = link.moment ?? film.moment;
@@ -277,7 +283,7 @@ export class Viewer {
         } else {
             this.#pilot.reset();
             this.#diagram.clear();
-            this.#isFollowing = true;
+            this.#isFollowing = this.#passes();
             store.change({ paused: false, look: lookOf(this.#data.camera.look), film: this.#pilot.film.isLong });
             this.#makeStale();
         }
@@ -329,10 +335,16 @@ export class Viewer {
         });
     }
 
+    /** Whether the film of the scene shows things that pass an observer who coasts. */
+    #passes() {
+        const { film } = this.#pilot;
+        return this.#data.flight.length === 0 && film.isLong && this.world.partOfSky(film.moment).angle < PASSING_ANGLE;
+    }
+
     /** Looks at what passes while the film of an observer who coasts is shown. */
     #follow() {
-        if (this.#isFollowing && this.store.state.film && this.#data.flight.length === 0) {
-            this.store.change({ look: lookOf(this.world.middleOfSky(this.moment)) });
+        if (this.#isFollowing && this.store.state.film) {
+            this.store.change({ look: lookOf(this.world.partOfSky(this.moment).middle) });
         }
     }
 

@@ -16,7 +16,7 @@ import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import { blackBodyUniforms, colorUniforms, definesOf } from "../effects/colors.js";
 import { orientationOf } from "../spacetime/moment.js";
 import { rotate } from "../spacetime/quaternion.js";
-import { length, scaled, subtract, sum, unit } from "../spacetime/vector.js";
+import { dot, length, scaled, subtract, sum, unit } from "../spacetime/vector.js";
 import { viewOf } from "../spacetime/view.js";
 import { Piece } from "./piece.js";
 import { roundOf } from "./round.js";
