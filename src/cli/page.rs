@@ -90,7 +90,10 @@ fn words(input: &InputArgs) -> String {
         (None, None) => {}
     }
     for folder in input.folders() {
-        words.push(format!("--allow-read {}", quoted(&folder.to_string_lossy())));
+        words.push(format!(
+            "--allow-read {}",
+            quoted(&folder.to_string_lossy())
+        ));
     }
     if let Some(normals) = input.normals {
         words.push(format!("--normals {normals}"));
