@@ -252,7 +252,7 @@ export class Viewer {
         store.subscribe(["film", "paused"], (state) => {
             if (this.#filmBar) {
                 this.#filmBar.element.hidden = !state.film;
-                this.#filmBar.playing.show(!state.paused);
+                this.#filmBar.showPlaying(!state.paused);
             }
         });
         store.subscribe(
