@@ -27,7 +27,7 @@ const LARGEST: f64 = 127.0;
 ///
 /// The light of a surface of colour `c`, over the luminance of a white one, is `c` times the hue of white, channel by channel,
 /// and a rest, which is 0 for every grey. The rest is in `rest`, three bytes for each colour and factor, red fastest, then green,
-/// blue and the factor: `(byte - 128) / 127 * scale`. Between colours it is linear in each of the six tetrahedra of a cube around
+/// blue and the factor: with `root = (byte - 128) / 127` it is `root |root| scale`. Between colours it is linear in each of the six tetrahedra of a cube around
 /// its grey diagonal. Beyond the first and the last factor, light is that of a grey as bright as the light at that factor.
 ///
 /// # Accuracy
@@ -80,7 +80,10 @@ impl ShaderTable {
             .collect();
         let largest = |rest: &DVec3| rest.abs().max_element();
         let scale = rests.iter().map(largest).fold(1e-6, f64::max);
-        let byte = |value: f64| (value / scale * LARGEST + ZERO).round() as u8;
+        let byte = |value: f64| {
+            let root = (value.abs() / scale).sqrt().copysign(value);
+            (root * LARGEST + ZERO).round() as u8
+        };
         Self {
             side: SIDE,
             factors: FACTORS,
@@ -152,7 +155,10 @@ mod tests {
             .map(|axis| (cell[axis] - corner[axis] as f64, SIDE.pow(axis as u32)))
             .collect();
         parts.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let value = |byte: u8| (f64::from(byte) - ZERO) / LARGEST * table.scale;
+        let value = |byte: u8| {
+            let root = (f64::from(byte) - ZERO) / LARGEST;
+            root * root.abs() * table.scale
+        };
         let entry = |number: usize| {
             DVec3::from_array(std::array::from_fn(|k| value(table.rest[3 * number + k])))
         };

@@ -19,9 +19,9 @@ use crate::spacetime::{Velocity, ViewModel};
 use crate::write::{Format, PageContent, WriteError, write_page, write_whole};
 
 /// Segments around a full turn of round shapes: the viewer draws what lies between them on the true surface.
-const SEGMENTS: u32 = 48;
+const SEGMENTS: u32 = 32;
 const SEGMENTS_OF_SPHERE: u32 = 24;
-const SEGMENTS_OF_TUBE: f64 = 12.0;
+const SEGMENTS_OF_TUBE: f64 = 8.0;
 
 /// Settings of a page.
 #[derive(Clone, Debug, Default)]

@@ -6,6 +6,7 @@ import { lookOf, rotationOfLook, turnedLook } from "./controls/look.js";
 import { mouseLook } from "./controls/mouse.js";
 import { Pilot } from "./controls/pilot.js";
 import { Touch } from "./controls/touch.js";
+import { whiteAt } from "./effects/colors.js";
 import { setRapidity, velocityOf } from "./spacetime/moment.js";
 import { firstState, Store } from "./state.js";
 import { words } from "./texts.js";
@@ -107,6 +108,7 @@ export class Viewer {
                     this.store.change({ film: false });
                     this.moment = setRapidity(this.moment, rapidity);
                 },
+                setSearchlight: (isOn) => this.#setSearchlight(isOn),
                 copyLink: () =>
                     this.#copy(`${location.href.split("#")[0]}#${writeLink(this.moment, this.store.state)}`),
                 copyRender: () => this.#copy(this.renderCommand()),
@@ -280,6 +282,16 @@ export class Viewer {
             this.#pilot.film.seek(this.#pilot.film.from);
         }
         this.store.change({ paused: isPaused });
+    }
+
+    /**
+     * The searchlight effect, exposed so that a white surface straight ahead is as bright as at rest.
+     * @param {boolean} isOn
+     */
+    #setSearchlight(isOn) {
+        const { rapidity } = velocityOf(this.moment);
+        const { brightness } = whiteAt(this.#data.colors.white, rapidity / Math.LN2);
+        this.store.change({ searchlight: isOn, exposure: isOn ? Math.max(Math.round(-brightness * 4) / 4, -12) : 0 });
     }
 
     #playFilm() {

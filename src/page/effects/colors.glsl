@@ -45,7 +45,8 @@ float brighter(float octaves) {
     uniform vec4 colorRange; // Binary logarithms of the first and the last factor, number of factors, scale.
 
     vec3 entryAt(ivec3 place) {
-        return (texelFetch(colorTable, place, 0).rgb * 255.0 - 128.0) / 127.0 * colorRange.w;
+        vec3 root = (texelFetch(colorTable, place, 0).rgb * 255.0 - 128.0) / 127.0;
+        return root * abs(root) * colorRange.w;
     }
 
     // Linear in each of the six tetrahedra of a cube around its grey diagonal.

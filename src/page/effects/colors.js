@@ -52,19 +52,27 @@ export function colorUniforms(tables, rest) {
 }
 
 /**
+ * The light of a white surface at a Doppler factor: its hue, and the binary logarithm of its luminance over that at rest.
+ * @param {ColorTables["white"]} white
+ * @param {number} octaves The binary logarithm of the factor.
+ */
+export function whiteAt({ light, log2_from: from, log2_to: to }, octaves) {
+    const place = Math.min(Math.max((octaves - from) / (to - from), 0), 1) * (light.length - 1);
+    const first = Math.min(Math.floor(place), light.length - 2);
+    const [red, green, blue, brightness] = light[first].map(
+        (low, k) => low + (light[first + 1][k] - low) * (place - first),
+    );
+    return { hue: [red, green, blue], brightness };
+}
+
+/**
  * The uniforms of a black body.
  * @param {ColorTables} tables
  * @param {{ kelvin: number, luminance: number }} emission
  */
 export function blackBodyUniforms(tables, { kelvin, luminance }) {
     const octaves = Math.log2(kelvin / tables.daylight_kelvin);
-    const { light, log2_from: from, log2_to: to } = tables.white;
-    const place = Math.min(Math.max((octaves - from) / (to - from), 0), 1) * (light.length - 1);
-    const first = Math.min(Math.floor(place), light.length - 2);
-    const hue = [0, 1, 2].map((channel) => {
-        const [low, high] = [light[first][channel], light[first + 1][channel]];
-        return low + (high - low) * (place - first);
-    });
+    const { hue } = whiteAt(tables.white, octaves);
     return { blackBody: { value: new Vector2(octaves, luminance) }, blackBodyHue: { value: hue } };
 }
 

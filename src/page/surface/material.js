@@ -1,6 +1,6 @@
 /** Materials of three.js whose vertices are drawn where they are seen, and whose colours are those of pictures. */
 
-import { DoubleSide, MeshStandardMaterial } from "three";
+import { MeshStandardMaterial, Texture } from "three";
 
 import colorsSource from "../effects/colors.glsl";
 import headLightSource from "../effects/head_light.glsl";
@@ -19,6 +19,9 @@ import vertexSource from "./vertex.glsl";
  * Names of GLSL and their values: each part of the program is compiled only where its name is there.
  * @typedef {Record<string, string | number>} Defines
  */
+
+/** Samples of a texture along its steepest slope, at most: surfaces reach far away at glancing angles. */
+const ANISOTROPY = 8;
 
 const VERTEX_BEGINNING = `${roundSource}\n${vertexSource}\n${lightConeSource}\n${placeSource}`;
 
@@ -118,6 +121,11 @@ export function relativisticMaterial(source, uniforms, defines) {
         material.color.copy(color);
         material.defines = { STANDARD: "", UNLIT: "", ...defines };
     }
+    for (const value of Object.values(material)) {
+        if (value instanceof Texture) {
+            value.anisotropy = ANISOTROPY;
+        }
+    }
     material.onBeforeCompile = (shader) => {
         Object.assign(shader.uniforms, uniforms);
         shader.vertexShader = withChunks(shader.vertexShader, VERTEX_CHUNKS);
@@ -125,9 +133,4 @@ export function relativisticMaterial(source, uniforms, defines) {
     };
     material.customProgramCacheKey = () => "photosurface";
     return material;
-}
-
-/** The material of a mesh whose file has none: white, matte, seen from both sides. */
-export function plainMaterial() {
-    return new MeshStandardMaterial({ roughness: 1, metalness: 0, side: DoubleSide });
 }

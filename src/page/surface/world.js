@@ -31,7 +31,7 @@ import { roundOf } from "./round.js";
 const MOST_LEAVES = 60_000;
 
 /** The part of what is seen that the first view from outside has in its picture. */
-const MOST_SEEN = 0.8;
+const MOST_SEEN = 0.9;
 
 /** How much coarser pictures get, at most, and how quickly they recover. */
 const COARSEST = 64;

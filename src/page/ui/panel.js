@@ -17,6 +17,7 @@ const QUICKEST = 5;
  * @property {() => void} reset
  * @property {() => void} playFilm
  * @property {(rapidity: number) => void} setRapidity
+ * @property {(isOn: boolean) => void} setSearchlight
  * @property {() => void} copyLink
  * @property {() => void} copyRender
  * @property {() => void} copyExport
@@ -40,7 +41,7 @@ export class Panel {
         this.element.append(
             this.#flying(store, actions, timeScale, hasFilm),
             this.#seeing(store),
-            this.#effects(store),
+            this.#effects(store, actions),
             group(words.share, [
                 button(words.copyLink, actions.copyLink),
                 button(words.copyRender, actions.copyRender),
@@ -119,10 +120,13 @@ export class Panel {
         ]);
     }
 
-    /** @param {import("../state.js").Store} store */
-    #effects(store) {
+    /**
+     * @param {import("../state.js").Store} store
+     * @param {Actions} actions
+     */
+    #effects(store, actions) {
         const doppler = choice(words.doppler, words.dopplers, (value) => store.change({ doppler: value }));
-        const searchlight = toggle(words.searchlight, (isDown) => store.change({ searchlight: isDown }));
+        const searchlight = toggle(words.searchlight, actions.setSearchlight);
         const exposure = slider(
             words.exposure,
             { from: -12, to: 12, step: 0.25 },
