@@ -91,16 +91,19 @@ export class World {
     }
 
     /**
-     * The middle of the part of the sky in which objects are seen, as a unit vector in the observer's own axes.
+     * The part of the sky in which objects are seen: its middle, a unit vector in the observer's own axes, and the largest
+     * angle from there in radians.
      * @param {import("../spacetime/moment.js").Moment} moment
-     * @returns {Vec3}
+     * @returns {{ middle: Vec3, angle: number }}
      */
-    middleOfSky(moment) {
+    partOfSky(moment) {
         const directions = this.#seenPlaces(moment).map((place) => unit(place, [0, 0, 0]));
-        return unit(
+        const middle = unit(
             directions.reduce((total, direction) => sum(total, direction), [0, 0, 0]),
             [0, 0, -1],
         );
+        const least = Math.min(...directions.map((direction) => dot(direction, middle)));
+        return { middle, angle: Math.acos(Math.min(Math.max(least, -1), 1)) };
     }
 
     /**
