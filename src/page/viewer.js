@@ -8,7 +8,8 @@ import { Pilot } from "./controls/pilot.js";
 import { Touch } from "./controls/touch.js";
 import { headKeys, outsideKeys } from "./controls/view_keys.js";
 import { whiteAt } from "./effects/colors.js";
-import { setRapidity, velocityOf } from "./spacetime/moment.js";
+import { orientationOf, setRapidity, velocityOf } from "./spacetime/moment.js";
+import { rotate } from "./spacetime/quaternion.js";
 import { firstState, Store } from "./state.js";
 import { words } from "./texts.js";
 import { copy, save } from "./ui/clipboard.js";
@@ -141,6 +142,10 @@ export class Viewer {
         this.views.outside.onChange(() => this.#makeStale());
         outsideKeys(page.outside, this.views.outside);
         setInterval(() => this.#keepAddress(), ADDRESS_MS);
+        page.outside.addEventListener("dblclick", () => {
+            this.#isFramed = false;
+            this.#makeStale();
+        });
         new ResizeObserver(() => this.#makeStale()).observe(page.canvas);
     }
 
@@ -197,10 +202,9 @@ export class Viewer {
         this.views.resize(width, height);
         if (rectangles.outside && !this.#isFramed) {
             this.#isFramed = true;
-            this.views.outside.frame(
-                this.world.seenBall(this.moment),
-                rectangles.outside.width / rectangles.outside.height,
-            );
+            const { rapidity, direction } = velocityOf(this.moment);
+            const ahead = rapidity > 0 ? direction : rotate(orientationOf(this.moment), [0, 0, -1]);
+            this.views.outside.frame(this.world.nearestSeen(this.moment), ahead, rectangles.outside);
         }
         this.views.draw(this.moment, rectangles);
         const isRead = this.#instruments.show(this.moment, this.#data.observer.position, now);
