@@ -13,8 +13,9 @@ const MAY_USE = {
     spacetime: [],
     effects: [],
     light_cone: ["spacetime"],
-    tessellation: ["light_cone", "spacetime", "surface"],
-    surface: ["effects", "light_cone", "spacetime", "tessellation"],
+    shape: ["spacetime"],
+    tessellation: ["light_cone", "shape", "spacetime"],
+    surface: ["effects", "light_cone", "shape", "spacetime", "tessellation"],
     views: ["spacetime", "surface"],
     controls: ["spacetime"],
     ui: ["controls", "spacetime"],
@@ -36,6 +37,10 @@ function imports() {
 }
 
 test("each folder of the page uses only what it may", () => {
+    const folders = Object.keys(MAY_USE);
+    for (const [folder, used] of Object.entries(MAY_USE)) {
+        assert.ok(used.every((other) => folders.indexOf(other) < folders.indexOf(folder)), `${folder} is below what it uses`);
+    }
     for (const [file, used] of imports()) {
         const folder = dirname(file);
         for (const other of used.filter((path) => dirname(path) !== folder && folder !== ".")) {
