@@ -101,7 +101,9 @@ fn every_folder_is_a_room_of_the_map() {
         let name = path.file_name().expect("a name").to_string_lossy();
         name.into_owned()
     });
-    let in_source: BTreeSet<String> = names.filter(|name| name != COMMAND && name != VIEWER).collect();
+    let in_source: BTreeSet<String> = names
+        .filter(|name| name != COMMAND && name != VIEWER)
+        .collect();
     let on_the_map: BTreeSet<String> = rooms().into_iter().map(|(room, _)| room).collect();
     assert_eq!(in_source, on_the_map);
 }
