@@ -6,6 +6,7 @@ import { lookOf, rotationOfLook, turnedLook } from "./controls/look.js";
 import { mouseLook } from "./controls/mouse.js";
 import { Pilot } from "./controls/pilot.js";
 import { Touch } from "./controls/touch.js";
+import { headKeys, outsideKeys } from "./controls/view_keys.js";
 import { whiteAt } from "./effects/colors.js";
 import { orientationOf, setRapidity, velocityOf } from "./spacetime/moment.js";
 import { rotate } from "./spacetime/quaternion.js";
@@ -32,6 +33,9 @@ const WIDE = 900;
 /** The widest and the narrowest vertical field of view in degrees. */
 const WIDEST = 150;
 const NARROWEST = 2;
+
+/** Milliseconds between two writings of the address. */
+const ADDRESS_MS = 1000;
 
 /** Radians that a gamepad turns the head by in a second. */
 const HEAD_RATE = 1.5;
@@ -140,6 +144,8 @@ export class Viewer {
             this.#isFramed = false;
             this.#makeStale();
         });
+        outsideKeys(page.outside, this.views.outside);
+        setInterval(() => this.#keepAddress(), ADDRESS_MS);
         new ResizeObserver(() => this.#makeStale()).observe(page.canvas);
     }
 
@@ -263,12 +269,15 @@ export class Viewer {
     /** @param {HTMLElement} element The element over the observer's view. */
     #look(element) {
         const { store } = this;
+        /** @param {[number, number]} change */
+        const turn = (change) => {
+            this.#isFollowing = false;
+            store.change({ look: turnedLook(store.state.look, change) });
+        };
+        headKeys(document.body, turn);
         mouseLook(element, {
             fieldOfViewDeg: () => store.state.fieldOfViewDeg,
-            turn: (change) => {
-                this.#isFollowing = false;
-                store.change({ look: turnedLook(store.state.look, change) });
-            },
+            turn,
             center: () => store.change({ look: [0, 0] }),
             zoom: (factor) => {
                 const next = store.state.fieldOfViewDeg * factor;
@@ -361,6 +370,14 @@ export class Viewer {
         if (left !== 0 || up !== 0) {
             const turn = HEAD_RATE * Math.min(seconds, 0.1);
             this.store.change({ look: turnedLook(this.store.state.look, [left * turn, up * turn]) });
+        }
+    }
+
+    /** Keeps what is shown in the address, but for the film. */
+    #keepAddress() {
+        const fragment = this.store.state.film ? "" : `#${writeLink(this.moment, this.store.state)}`;
+        if (fragment !== location.hash) {
+            history.replaceState(null, "", fragment || location.href.split("#")[0]);
         }
     }
 

@@ -1,6 +1,6 @@
 /** The view from outside: the photosurface as an object that one can look at from anywhere. */
 
-import { Matrix4, PerspectiveCamera, Quaternion, Vector3 } from "three";
+import { Matrix4, PerspectiveCamera, Quaternion, Spherical, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 /** @typedef {import("../spacetime/vector.js").Vec3} Vec3 */
@@ -87,14 +87,27 @@ export class OutsideView {
         this.#controls.update();
     }
 
-    /** Where the camera is and at what it looks, in the axes of the scene under the boost. */
-    get pose() {
-        return { position: this.#orbit.position.toArray(), target: this.#controls.target.toArray() };
+    /**
+     * Moves the camera around what it looks at.
+     * @param {number} left Radians.
+     * @param {number} up Radians.
+     */
+    turn(left, up) {
+        const { target } = this.#controls;
+        const arm = new Spherical().setFromVector3(this.#orbit.position.clone().sub(target));
+        arm.theta -= left;
+        arm.phi -= up;
+        this.#orbit.position.setFromSpherical(arm.makeSafe()).add(target);
+        this.#controls.update();
     }
 
-    set pose({ position, target }) {
-        this.#orbit.position.fromArray(position);
-        this.#controls.target.fromArray(target);
+    /**
+     * Moves the camera nearer to what it looks at, or farther away.
+     * @param {number} factor
+     */
+    zoom(factor) {
+        const { target } = this.#controls;
+        this.#orbit.position.sub(target).multiplyScalar(factor).add(target);
         this.#controls.update();
     }
 
