@@ -55,7 +55,7 @@ fn blender_and_meshlab_agree() {
 }
 
 /// A directory of this name inside cargo's target directory.
-fn home(name: &str) -> PathBuf {
+pub(crate) fn home(name: &str) -> PathBuf {
     let home = Path::new(env!("CARGO_TARGET_TMPDIR"))
         .parent()
         .expect("cargo's directory for temporary files is inside its target directory")
@@ -156,7 +156,7 @@ fn node_modules(home: &Path) -> PathBuf {
 }
 
 /// Runs `install` unless it has succeeded before with the same pins.
-fn install_once(stamp: &Path, pins: &str, install: impl FnOnce()) {
+pub(crate) fn install_once(stamp: &Path, pins: &str, install: impl FnOnce()) {
     if fs::read_to_string(stamp).is_ok_and(|installed| installed == pins) {
         return;
     }
@@ -172,17 +172,17 @@ fn remove_directory(directory: &Path) {
     }
 }
 
-fn must_succeed(command: &mut Command, needs: &str) {
+pub(crate) fn must_succeed(command: &mut Command, needs: &str) {
     let failure = match run(command) {
         Ok(output) if output.status.success() => return,
         Ok(output) => transcript(&output),
         Err(error) => error.to_string(),
     };
-    panic!("the cross-check could not be installed: {command:?} failed. {needs}\n{failure}");
+    panic!("what the tests need could not be installed: {command:?} failed. {needs}\n{failure}");
 }
 
 /// Runs a command without what in the caller's environment would change the meaning of a test.
-fn run(command: &mut Command) -> io::Result<Output> {
+pub(crate) fn run(command: &mut Command) -> io::Result<Output> {
     command
         .env_remove("PYTHONPATH")
         .env_remove("PYTHONHOME")
@@ -191,7 +191,7 @@ fn run(command: &mut Command) -> io::Result<Output> {
         .output()
 }
 
-fn transcript(output: &Output) -> String {
+pub(crate) fn transcript(output: &Output) -> String {
     format!(
         "{}{}",
         String::from_utf8_lossy(&output.stdout),

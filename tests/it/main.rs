@@ -100,5 +100,6 @@ mod cost {
 
 mod crosscheck;
 mod fuzz_corpus;
+mod page_in_browser;
 mod regression;
 mod rooms;

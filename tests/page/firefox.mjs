@@ -1,6 +1,10 @@
-/** Firefox without a screen, told what to do by its own protocol, Marionette: no other program is needed. */
+/**
+ * Firefox, told what to do by its own protocol, Marionette. Without a screen it has no WebGL on a machine without a graphics
+ * processor, so it gets one in memory.
+ */
 
 import { spawn, spawnSync } from "node:child_process";
+import { once } from "node:events";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { connect } from "node:net";
 import { join } from "node:path";
@@ -29,18 +33,27 @@ const PATIENCE = 60_000;
  * @param {string} folder For its profile.
  */
 export async function inFirefox(folder, work) {
-    if (spawnSync(FIREFOX, ["--version"]).error) {
-        throw new Error(`${FIREFOX} is missing: apt-get install firefox-esr`);
+    for (const [name, flag] of [
+        [FIREFOX, "--version"],
+        ["Xvfb", "-help"],
+    ]) {
+        if (spawnSync(name, [flag]).error) {
+            throw new Error(`${name} is missing: apt-get install firefox-esr xvfb libgl1-mesa-dri`);
+        }
     }
     const profile = join(folder, "profile");
     mkdirSync(profile);
     const lines = Object.entries(SETTINGS).map(([name, value]) => `user_pref("${name}", ${JSON.stringify(value)});\n`);
     writeFileSync(join(profile, "user.js"), lines.join(""));
-    const program = spawn(FIREFOX, ["--headless", "--no-remote", "--marionette", "--profile", profile], {
-        stdio: "ignore",
-        env: { ...process.env, HOME: folder, MOZ_CRASHREPORTER_DISABLE: "1" },
+    const screen = spawn("Xvfb", ["-displayfd", "1", "-screen", "0", "1280x1024x24", "-nolisten", "tcp"], {
+        stdio: ["ignore", "pipe", "ignore"],
     });
-    const ended = new Promise((resolve) => program.once("exit", resolve));
+    const [line] = await once(screen.stdout, "data");
+    const program = spawn(FIREFOX, ["--no-remote", "--marionette", "--profile", profile], {
+        stdio: "ignore",
+        env: { ...process.env, HOME: folder, DISPLAY: `:${String(line).trim()}`, MOZ_CRASHREPORTER_DISABLE: "1" },
+    });
+    const ended = [screen, program].map((each) => once(each, "exit"));
     try {
         const socket = connect(await portOf(profile), "127.0.0.1");
         const { send } = conversation(socket);
@@ -50,7 +63,9 @@ export async function inFirefox(folder, work) {
         return result;
     } finally {
         program.kill();
-        await ended;
+        await ended[1];
+        screen.kill();
+        await ended[0];
     }
 }
 

@@ -22,6 +22,12 @@ export const LEAF_HALVINGS = 2;
 const LEAST_ACROSS = 0.15;
 
 /**
+ * Cosine of the angle that an edge may be seen under where it is bent. A triangle around the foot of the eye on a wall has a
+ * longer one, however far its edges are: so triangles get small beside the eye, and the wall stays on its side.
+ */
+const WIDEST = 0.4;
+
+/**
  * How often the edge between two points has to be halved, at most one more than `LEAF_HALVINGS`.
  * @param {import("../light_cone/sight.js").Sight} sight
  * @param {Sharpness} sharpness
@@ -35,6 +41,9 @@ export function halvings(sight, sharpness, points, a, b) {
     const dot = points[a] * points[b] + points[a + 1] * points[b + 1] + points[a + 2] * points[b + 2];
     const middle = Math.sqrt(Math.max(ra * ra + rb * rb + 2 * dot, 0));
     const gap = (sight.bend * Math.max(ra * rb - dot, 0)) / (ra + rb + middle);
+    if (dot < WIDEST * ra * rb && gap > sharpness.observer * sharpness.nearest) {
+        return LEAF_HALVINGS + 1;
+    }
     return halvingsFor(tooFar(sharpness, points, a, b, gap, sight.motion));
 }
 

@@ -24,8 +24,8 @@ const TOLERANCE_PX = 0.3;
 /** The size of the marker as a part of the distance from which it is looked at. */
 const MARKER_SIZE = 0.02;
 
-/** The nearest and farthest depths, in sizes of the scene. */
-const NEAR = 1e-4;
+/** The nearest and farthest depths, in sizes of the scene: beside a wall little is in front of the first. */
+const NEAR = 1e-5;
 const FAR = 1e9;
 
 /** Pixels of a screen for each CSS pixel, at most. */
