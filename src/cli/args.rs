@@ -19,7 +19,7 @@ use super::values::{list, number, numbers, vector, whole_number};
 pub(super) struct InputArgs {
     /// A scene file (.json), a mesh (.glb, .gltf, .obj, .ply, .stl, .off), or - to read a scene (JSON), a GLB, PLY, STL or OFF
     /// from stdin; coordinates of a PLY, STL or OFF are taken as they stand, y up
-    /// [default: the built-in scene "sphere"]
+    /// [default: the built-in scene "sphere", of page "flight"]
     #[arg(value_name = "SCENE|MESH")]
     pub(super) input: Option<PathBuf>,
     /// Use a built-in scene; `photosurface example` lists them

@@ -63,7 +63,7 @@ export const words = {
     hintTouch: "Left stick: thrust. Right stick: turn.",
     helpTitle: "How to fly",
     helpMouse:
-        "Drag the observer's view to look around, and the view from outside to turn it; the wheel changes the field of view and the distance. A gamepad and two sticks on touch screens fly too.",
+        "Drag the observer's view to look around, and the view from outside to turn it; the wheel changes the field of view and the distance, a double click puts a view right again. While the view from outside has the focus, arrows and +, − do the same. A gamepad and two sticks on touch screens fly too.",
     physicsTitle: "What you see",
     keys: [
         ["W or ↑", "accelerate"],
@@ -71,6 +71,7 @@ export const words = {
         ["A, D or ←, →", "turn left, right"],
         ["R, F", "turn up, down"],
         ["Q, E", "roll"],
+        ["I, J, K, L", "look around"],
         ["Shift", "with all there is"],
         ["X", "brake to rest"],
         ["Space", "pause"],

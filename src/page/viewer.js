@@ -6,8 +6,10 @@ import { lookOf, rotationOfLook, turnedLook } from "./controls/look.js";
 import { mouseLook } from "./controls/mouse.js";
 import { Pilot } from "./controls/pilot.js";
 import { Touch } from "./controls/touch.js";
+import { headKeys, outsideKeys } from "./controls/view_keys.js";
 import { whiteAt } from "./effects/colors.js";
-import { setRapidity, velocityOf } from "./spacetime/moment.js";
+import { orientationOf, setRapidity, velocityOf } from "./spacetime/moment.js";
+import { rotate } from "./spacetime/quaternion.js";
 import { firstState, Store } from "./state.js";
 import { words } from "./texts.js";
 import { copy, save } from "./ui/clipboard.js";
@@ -31,6 +33,9 @@ const WIDE = 900;
 /** The widest and the narrowest vertical field of view in degrees. */
 const WIDEST = 150;
 const NARROWEST = 2;
+
+/** Milliseconds between two writings of the address. */
+const ADDRESS_MS = 1000;
 
 /** Radians that a gamepad turns the head by in a second. */
 const HEAD_RATE = 1.5;
@@ -135,6 +140,12 @@ export class Viewer {
         this.#subscribe(shell, help, legend);
         this.#greet(page.canvas);
         this.views.outside.onChange(() => this.#makeStale());
+        outsideKeys(page.outside, this.views.outside);
+        setInterval(() => this.#keepAddress(), ADDRESS_MS);
+        page.outside.addEventListener("dblclick", () => {
+            this.#isFramed = false;
+            this.#makeStale();
+        });
         new ResizeObserver(() => this.#makeStale()).observe(page.canvas);
     }
 
@@ -191,10 +202,9 @@ export class Viewer {
         this.views.resize(width, height);
         if (rectangles.outside && !this.#isFramed) {
             this.#isFramed = true;
-            this.views.outside.frame(
-                this.world.seenBall(this.moment),
-                rectangles.outside.width / rectangles.outside.height,
-            );
+            const { rapidity, direction } = velocityOf(this.moment);
+            const ahead = rapidity > 0 ? direction : rotate(orientationOf(this.moment), [0, 0, -1]);
+            this.views.outside.frame(this.world.nearestSeen(this.moment), ahead, rectangles.outside);
         }
         this.views.draw(this.moment, rectangles);
         const isRead = this.#instruments.show(this.moment, this.#data.observer.position, now);
@@ -246,7 +256,7 @@ export class Viewer {
         store.subscribe(["film", "paused"], (state) => {
             if (this.#filmBar) {
                 this.#filmBar.element.hidden = !state.film;
-                this.#filmBar.playing.show(!state.paused);
+                this.#filmBar.showPlaying(!state.paused);
             }
         });
         store.subscribe(
@@ -259,12 +269,15 @@ export class Viewer {
     /** @param {HTMLElement} element The element over the observer's view. */
     #look(element) {
         const { store } = this;
+        /** @param {[number, number]} change */
+        const turn = (change) => {
+            this.#isFollowing = false;
+            store.change({ look: turnedLook(store.state.look, change) });
+        };
+        headKeys(document.body, turn);
         mouseLook(element, {
             fieldOfViewDeg: () => store.state.fieldOfViewDeg,
-            turn: (change) => {
-                this.#isFollowing = false;
-                store.change({ look: turnedLook(store.state.look, change) });
-            },
+            turn,
             center: () => store.change({ look: [0, 0] }),
             zoom: (factor) => {
                 const next = store.state.fieldOfViewDeg * factor;
@@ -357,6 +370,14 @@ export class Viewer {
         if (left !== 0 || up !== 0) {
             const turn = HEAD_RATE * Math.min(seconds, 0.1);
             this.store.change({ look: turnedLook(this.store.state.look, [left * turn, up * turn]) });
+        }
+    }
+
+    /** Keeps what is shown in the address, but for the film. */
+    #keepAddress() {
+        const fragment = this.store.state.film ? "" : `#${writeLink(this.moment, this.store.state)}`;
+        if (fragment !== location.hash) {
+            history.replaceState(null, "", fragment || location.href.split("#")[0]);
         }
     }
 

@@ -57,6 +57,7 @@ export class Layout {
             observer: this.#layout === "outside" ? null : this.#layout === "both" ? half(0) : whole,
             outside: this.#layout === "observer" ? null : this.#layout === "both" ? half(1) : whole,
         };
+        this.#outside.classList.toggle("below", isNarrow);
         for (const [element, rectangle] of /** @type {const} */ ([
             [this.#observer, rectangles.observer],
             [this.#outside, rectangles.outside],
