@@ -191,12 +191,13 @@ fn flying(flight: &str) -> String {
 #[test]
 fn a_flight_is_left_out() {
     let workplace = Workplace::new();
-    let flight = r#""flight": [{ "proper_time": 600, "acceleration": [0.5, 0.1, 0] }],
+    let flight = r#""flight": [{ "proper_time": 670, "acceleration": [0.5, 0.1, 0] }],
         "integrator": { "rk4": 0.125 }, "#;
     workplace.write("flying.json", flying(flight));
     workplace.write("straight.json", flying(""));
     let export = |line: &str| {
-        (workplace.run(&format!("export {line} -o out.glb --steps 1,3"))).success();
+        let run = workplace.run(&format!("export {line} -o out.glb --steps 1,3"));
+        assert!(run.status < 2, "{run}");
         workplace.read("out.glb")
     };
     let straight = export("straight.json");
@@ -204,9 +205,9 @@ fn a_flight_is_left_out() {
     assert!(straight == export("flying.json --no-flight"));
     // The flight starts at another speed, and is refused there.
     workplace
-        .run("export flying.json -o none.glb --rapidity 100")
+        .run("export flying.json -o none.glb --rapidity 10")
         .error(&["flight[0] ends at rapidity"]);
-    export("flying.json --rapidity 100 --no-flight");
+    export("flying.json --rapidity 10 --no-flight");
     workplace.write("list.json", "[]");
     for flag in ["--flight list.json", "--integrator exact"] {
         workplace
