@@ -140,12 +140,12 @@ export class Viewer {
         this.#subscribe(shell, help, legend);
         this.#greet(page.canvas);
         this.views.outside.onChange(() => this.#makeStale());
+        outsideKeys(page.outside, this.views.outside);
+        setInterval(() => this.#keepAddress(), ADDRESS_MS);
         page.outside.addEventListener("dblclick", () => {
             this.#isFramed = false;
             this.#makeStale();
         });
-        outsideKeys(page.outside, this.views.outside);
-        setInterval(() => this.#keepAddress(), ADDRESS_MS);
         new ResizeObserver(() => this.#makeStale()).observe(page.canvas);
     }
 

@@ -14,12 +14,12 @@ import {
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 
 import { blackBodyUniforms, colorUniforms, definesOf } from "../effects/colors.js";
+import { roundOf } from "../shape/round.js";
 import { orientationOf } from "../spacetime/moment.js";
 import { rotate } from "../spacetime/quaternion.js";
 import { dot, length, scaled, subtract, sum, unit } from "../spacetime/vector.js";
 import { viewOf } from "../spacetime/view.js";
 import { Piece } from "./piece.js";
-import { roundOf } from "./round.js";
 
 /** @typedef {import("../spacetime/vector.js").Vec3} Vec3 */
 /** @typedef {import("../data.js").PageData} PageData */
