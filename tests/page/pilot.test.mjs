@@ -64,4 +64,9 @@ test("who begins to fly ends a pause, but not with a key that is still down", ()
     assert.equal(pilot.frame(FRAME, paused), true);
     assert.equal(pilot.frame(FRAME, { ...paused, paused: false }), false);
     assert.equal(pilot.frame(FRAME, paused), false);
+    // The engines still follow, but the key is pressed again.
+    device.input = noInput();
+    assert.equal(pilot.frame(FRAME, paused), false);
+    device.input = { ...noInput(), yaw: 1 };
+    assert.equal(pilot.frame(FRAME, paused), true);
 });

@@ -63,10 +63,10 @@ export class Pilot {
      */
     frame(seconds, { paused, timeScale, steering, film }) {
         const time = Math.min(Math.max(seconds, 0), LONGEST_FRAME);
-        const wasActive = this.#controls.isActive;
+        const wasHeld = this.#controls.isHeld;
         const command = this.#controls.read(time, timeScale);
         // Who pauses with a key still down wants a pause.
-        const takesOver = this.#controls.isActive && (film || (paused && !wasActive));
+        const takesOver = (film && this.#controls.isActive) || (paused && this.#controls.isHeld && !wasHeld);
         const dTau = paused ? 0 : time * timeScale;
         if (film && !takesOver) {
             this.film.play(dTau);
