@@ -25,8 +25,8 @@ const FINER = 4;
 const MOST_CHANGED = 3e-3;
 
 /**
- * Pixels of a moment in which some of the background shows, but not half: where edges are cut off at the border of the picture,
- * the two triangles at an edge are rounded apart by some rasterizers.
+ * Pixels of a moment in which background shows, alone or as a line no wider than a pixel: single pixels of long edges, which
+ * SwiftShader cuts off at the border of the picture. A hole has neighbours to its right or below too.
  */
 const MOST_HAIRLINES = 40;
 
@@ -82,7 +82,8 @@ function drawInPage(finer) {
     let [holes, hairlines, changed] = [0, 0, 0];
     for (let at = 0; at < pixels.length; at += 4) {
         const background = (pixels[at] + pixels[at + 2]) / 2 - pixels[at + 1];
-        holes += background > 128 ? 1 : 0;
+        const besides = [at + 4, at + 4 * width].map((next) => (pixels[next] + pixels[next + 2]) / 2 - pixels[next + 1]);
+        holes += background > 128 && besides.every((each) => each > 128) ? 1 : 0;
         hairlines += background > 16 ? 1 : 0;
         changed += [0, 1, 2].some((k) => Math.abs(pixels[at + k] - last[at + k]) > 24) ? 1 : 0;
     }
