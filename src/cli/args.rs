@@ -19,7 +19,7 @@ use super::values::{list, number, numbers, vector, whole_number};
 pub(super) struct InputArgs {
     /// A scene file (.json), a mesh (.glb, .gltf, .obj, .ply, .stl, .off), or - to read a scene (JSON), a GLB, PLY, STL or OFF
     /// from stdin; coordinates of a PLY, STL or OFF are taken as they stand, y up
-    /// [default: the built-in scene "sphere"]
+    /// [default: the built-in scene "sphere", of page "flight"]
     #[arg(value_name = "SCENE|MESH")]
     pub(super) input: Option<PathBuf>,
     /// Use a built-in scene; `photosurface example` lists them
@@ -82,6 +82,9 @@ pub(super) struct ObserverArgs {
     /// with "units" if accelerations are in g and the scene has none. The scene's integrator stays unless the file has one
     #[arg(long, value_name = "FILE")]
     flight: Option<PathBuf>,
+    /// The observer keeps the velocity and the axes of the observation at all times, whatever flight the scene has
+    #[arg(long, conflicts_with_all = ["flight", "integrator"])]
+    no_flight: bool,
     /// How the flight is computed: exact, or by Euler's method or that of Runge and Kutta with steps of so much proper time
     #[arg(long, value_name = "exact|euler:STEP|rk4:STEP", value_parser = integrator, allow_hyphen_values = true)]
     integrator: Option<Integrator>,
@@ -155,6 +158,10 @@ impl ObserverArgs {
         observer.velocity = self.velocity(&observer)?;
         if let Some(orientation) = self.orientation {
             observer.orientation = orientation;
+        }
+        if self.no_flight {
+            observer.flight.clear();
+            observer.integrator = Integrator::default();
         }
         let mut scene = scene;
         if let Some(path) = &self.flight {

@@ -18,6 +18,9 @@ pub(super) struct EffectArgs {
     /// whole shifted spectrum
     #[arg(long)]
     searchlight: bool,
+    /// Show no searchlight effect, also where the scene has it
+    #[arg(long, conflicts_with = "searchlight")]
+    no_searchlight: bool,
     /// Make pictures, and colours of vertices, brighter by a number of stops, each a factor of 2; pictures by "auto" as bright
     /// as a screen can show, all of them alike; without effect on the colours of a ramp [default: 0]
     #[arg(long, value_name = "STOPS|auto", value_parser = exposure, allow_hyphen_values = true)]
@@ -49,7 +52,7 @@ impl EffectArgs {
         let effects = scene.effects();
         scene.with_effects(Effects {
             doppler: self.doppler(effects.doppler),
-            searchlight: self.searchlight || effects.searchlight,
+            searchlight: self.searchlight || effects.searchlight && !self.no_searchlight,
             exposure: self.exposure.unwrap_or(effects.exposure),
         })
     }
@@ -111,5 +114,10 @@ mod tests {
             with_flags("{}", &["--doppler=spectrum"]).doppler,
             Doppler::Spectrum(Spectrum::default())
         );
+        let bright = r#"{ "doppler": "spectrum", "searchlight": true }"#;
+        let without = with_flags(bright, &["--no-searchlight"]);
+        assert_eq!(without, with_flags(r#"{ "doppler": "spectrum" }"#, &[]));
+        assert!(with_flags(bright, &[]).searchlight);
+        assert!(!with_flags("{}", &["--no-searchlight"]).searchlight);
     }
 }

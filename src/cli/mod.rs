@@ -27,6 +27,7 @@ mod provenance;
 mod quoting;
 mod render;
 mod schema;
+mod serve;
 mod speeds;
 mod status;
 mod tables;

@@ -3,7 +3,11 @@
 /// A word, quoted where a shell would read it as more or less than it is.
 pub(super) fn quoted(word: &str) -> String {
     let is_plain = |character: char| {
-        character.is_ascii_alphanumeric() || matches!(character, '_' | '-' | '.' | '/' | ',' | ':' | '=' | '+' | '@' | '%')
+        character.is_ascii_alphanumeric()
+            || matches!(
+                character,
+                '_' | '-' | '.' | '/' | ',' | ':' | '=' | '+' | '@' | '%'
+            )
     };
     match !word.is_empty() && word.chars().all(is_plain) {
         true => word.to_owned(),

@@ -211,7 +211,10 @@ mod tests {
                 all += 1;
             }
         }
-        assert!(near * 10 >= all * 7 && far * 10 >= all * 8, "{near}, {far} of {all}");
+        assert!(
+            near * 10 >= all * 7 && far * 10 >= all * 8,
+            "{near}, {far} of {all}"
+        );
     }
 
     #[test]
@@ -223,7 +226,9 @@ mod tests {
             for part in [0.1, 0.6, 1.0] {
                 let color = DVec3::splat(part);
                 let expected = light.seen(color, light.daylight(), octaves.exp2());
-                let error = (shaded(&table, color, octaves) - expected).abs().max_element();
+                let error = (shaded(&table, color, octaves) - expected)
+                    .abs()
+                    .max_element();
                 let limit = 2e-3 * expected.abs().max_element();
                 assert!(error < limit, "{octaves} {part}: {error:e}");
             }

@@ -140,7 +140,9 @@ impl PageData {
         let objects: Vec<_> = objects.collect();
         let first = first_view(placed, &settings.textures)?;
         let names: Vec<&str> = scene.objects().iter().map(|object| &*object.name).collect();
-        let title = scene.title().map_or_else(|| names.join(", "), str::to_owned);
+        let title = scene
+            .title()
+            .map_or_else(|| names.join(", "), str::to_owned);
         Ok(Self {
             version: env!("CARGO_PKG_VERSION"),
             title,
@@ -256,12 +258,20 @@ impl ColorsData {
             white: WhiteData {
                 log2_from: white_from,
                 log2_to: white_to,
-                light: table.white.iter().map(|row| row.map(|part| part as f32)).collect(),
+                light: table
+                    .white
+                    .iter()
+                    .map(|row| row.map(|part| part as f32))
+                    .collect(),
             },
             ramp: RampData {
                 log2_from: ramp_from,
                 log2_to: ramp_to,
-                colors: table.ramp.iter().map(|row| row.map(|part| part as f32)).collect(),
+                colors: table
+                    .ramp
+                    .iter()
+                    .map(|row| row.map(|part| part as f32))
+                    .collect(),
             },
             daylight_kelvin: table.daylight_kelvin,
         }
@@ -272,6 +282,10 @@ impl ColorsData {
 fn is_round(shape: &Shape) -> bool {
     match shape {
         Shape::Cuboid(_) | Shape::Grid(_) | Shape::Lattice(_) => false,
-        Shape::Sphere(_) | Shape::Cylinder(_) | Shape::Cone(_) | Shape::Rod(_) | Shape::Torus(_) => true,
+        Shape::Sphere(_)
+        | Shape::Cylinder(_)
+        | Shape::Cone(_)
+        | Shape::Rod(_)
+        | Shape::Torus(_) => true,
     }
 }

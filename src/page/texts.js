@@ -35,7 +35,7 @@ export const words = {
     ghostContracted: "Contracted ghosts, outside",
     fieldOfView: "Field of view",
     diagram: "Minkowski diagram",
-    share: "Take along",
+    share: "Save and share",
     copyLink: "Copy link",
     copyRender: "Copy command: picture",
     copyExport: "Copy command: photosurface",
@@ -63,7 +63,7 @@ export const words = {
     hintTouch: "Left stick: thrust. Right stick: turn.",
     helpTitle: "How to fly",
     helpMouse:
-        "Drag the observer's view to look around, and the view from outside to turn it; the wheel changes the field of view and the distance. A gamepad and two sticks on touch screens fly too.",
+        "Drag the observer's view to look around, and the view from outside to turn it; the wheel changes the field of view and the distance, a double click puts a view right again. While the view from outside has the focus, arrows and +, − do the same. A gamepad and two sticks on touch screens fly too.",
     physicsTitle: "What you see",
     keys: [
         ["W or ↑", "accelerate"],
@@ -71,7 +71,8 @@ export const words = {
         ["A, D or ←, →", "turn left, right"],
         ["R, F", "turn up, down"],
         ["Q, E", "roll"],
-        ["Shift", "with all there is"],
+        ["I, J, K, L", "look around"],
+        ["Shift", "full thrust"],
         ["X", "brake to rest"],
         ["Space", "pause"],
         ["Backspace", "start again"],

@@ -6,8 +6,10 @@ import { lookOf, rotationOfLook, turnedLook } from "./controls/look.js";
 import { mouseLook } from "./controls/mouse.js";
 import { Pilot } from "./controls/pilot.js";
 import { Touch } from "./controls/touch.js";
+import { headKeys, outsideKeys } from "./controls/view_keys.js";
 import { whiteAt } from "./effects/colors.js";
-import { setRapidity, velocityOf } from "./spacetime/moment.js";
+import { orientationOf, setRapidity, velocityOf } from "./spacetime/moment.js";
+import { rotate } from "./spacetime/quaternion.js";
 import { firstState, Store } from "./state.js";
 import { words } from "./texts.js";
 import { copy, save } from "./ui/clipboard.js";
@@ -32,8 +34,15 @@ const WIDE = 900;
 const WIDEST = 150;
 const NARROWEST = 2;
 
+/** Milliseconds between two writings of the address. */
+const ADDRESS_MS = 1000;
+
 /** Radians that a gamepad turns the head by in a second. */
 const HEAD_RATE = 1.5;
+
+/** Things within this angle of a direction, in radians, are looked at as they pass, in such a field of view in degrees. */
+const PASSING_ANGLE = 0.8;
+const PASSING_FIELD_DEG = 40;
 
 /** Frames whose times are kept. */
 const FRAMES_KEPT = 600;
@@ -59,6 +68,8 @@ export class Viewer {
     #last = 0;
     #isStale = true;
     #isFramed = false;
+    /** Whether the head follows what passes, as long as nobody turns it. */
+    #isFollowing;
 
     /**
      * @param {import("./data.js").PageData} data
@@ -89,10 +100,12 @@ export class Viewer {
         this.#pilot.reset();
         const { film } = this.#pilot;
         const link = readLink(location.hash, data.observer);
+        this.#isFollowing = this.#passes();
         this.store = new Store({
             ...firstState(data, this.#pilot.timeScale),
             look: lookOf(data.camera.look),
             film: film.isLong && !link.moment,
+            ...(this.#isFollowing && { fieldOfViewDeg: PASSING_FIELD_DEG }),
             ...link.state,
         });
         this.#pilot.moment = link.moment ?? film.moment;
@@ -127,6 +140,12 @@ export class Viewer {
         this.#subscribe(shell, help, legend);
         this.#greet(page.canvas);
         this.views.outside.onChange(() => this.#makeStale());
+        outsideKeys(page.outside, this.views.outside);
+        setInterval(() => this.#keepAddress(), ADDRESS_MS);
+        page.outside.addEventListener("dblclick", () => {
+            this.#isFramed = false;
+            this.#makeStale();
+        });
         new ResizeObserver(() => this.#makeStale()).observe(page.canvas);
     }
 
@@ -162,6 +181,7 @@ export class Viewer {
             this.store.change({ paused: true });
         }
         this.#turnHead((now - last) / 1000);
+        this.#follow();
         if (this.#vr.isPresenting) {
             this.views.drawInHeadset(this.moment);
             this.#isStale = true;
@@ -182,10 +202,9 @@ export class Viewer {
         this.views.resize(width, height);
         if (rectangles.outside && !this.#isFramed) {
             this.#isFramed = true;
-            this.views.outside.frame(
-                this.world.seenBall(this.moment),
-                rectangles.outside.width / rectangles.outside.height,
-            );
+            const { rapidity, direction } = velocityOf(this.moment);
+            const ahead = rapidity > 0 ? direction : rotate(orientationOf(this.moment), [0, 0, -1]);
+            this.views.outside.frame(this.world.nearestSeen(this.moment), ahead, rectangles.outside);
         }
         this.views.draw(this.moment, rectangles);
         const isRead = this.#instruments.show(this.moment, this.#data.observer.position, now);
@@ -237,7 +256,7 @@ export class Viewer {
         store.subscribe(["film", "paused"], (state) => {
             if (this.#filmBar) {
                 this.#filmBar.element.hidden = !state.film;
-                this.#filmBar.playing.show(!state.paused);
+                this.#filmBar.showPlaying(!state.paused);
             }
         });
         store.subscribe(
@@ -250,9 +269,15 @@ export class Viewer {
     /** @param {HTMLElement} element The element over the observer's view. */
     #look(element) {
         const { store } = this;
+        /** @param {[number, number]} change */
+        const turn = (change) => {
+            this.#isFollowing = false;
+            store.change({ look: turnedLook(store.state.look, change) });
+        };
+        headKeys(document.body, turn);
         mouseLook(element, {
             fieldOfViewDeg: () => store.state.fieldOfViewDeg,
-            turn: (change) => store.change({ look: turnedLook(store.state.look, change) }),
+            turn,
             center: () => store.change({ look: [0, 0] }),
             zoom: (factor) => {
                 const next = store.state.fieldOfViewDeg * factor;
@@ -271,6 +296,7 @@ export class Viewer {
         } else {
             this.#pilot.reset();
             this.#diagram.clear();
+            this.#isFollowing = this.#passes();
             store.change({ paused: false, look: lookOf(this.#data.camera.look), film: this.#pilot.film.isLong });
             this.#makeStale();
         }
@@ -322,6 +348,19 @@ export class Viewer {
         });
     }
 
+    /** Whether the film of the scene shows things that pass an observer who coasts. */
+    #passes() {
+        const { film } = this.#pilot;
+        return this.#data.flight.length === 0 && film.isLong && this.world.partOfSky(film.moment).angle < PASSING_ANGLE;
+    }
+
+    /** Looks at what passes while the film of an observer who coasts is shown. */
+    #follow() {
+        if (this.#isFollowing && this.store.state.film) {
+            this.store.change({ look: lookOf(this.world.partOfSky(this.moment).middle) });
+        }
+    }
+
     /**
      * Turns the head as the right stick of a gamepad asks.
      * @param {number} seconds
@@ -331,6 +370,14 @@ export class Viewer {
         if (left !== 0 || up !== 0) {
             const turn = HEAD_RATE * Math.min(seconds, 0.1);
             this.store.change({ look: turnedLook(this.store.state.look, [left * turn, up * turn]) });
+        }
+    }
+
+    /** Keeps what is shown in the address, but for the film. */
+    #keepAddress() {
+        const fragment = this.store.state.film ? "" : `#${writeLink(this.moment, this.store.state)}`;
+        if (fragment !== location.hash) {
+            history.replaceState(null, "", fragment || location.href.split("#")[0]);
         }
     }
 

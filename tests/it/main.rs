@@ -92,6 +92,13 @@ mod cli {
     mod render;
 }
 
+mod page {
+    mod content;
+    mod files;
+    mod serve;
+    mod taken_apart;
+}
+
 mod cost {
     mod integrators;
     mod meshes;

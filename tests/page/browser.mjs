@@ -70,8 +70,8 @@ export function writePage(folder, input, change = (html) => html) {
 /**
  * Opens a page. Beside Playwright's page: what went wrong in it, what it asked a network for, and how to draw a state.
  */
-export async function openPage(browser, path, { width = 640, height = 480, before = null } = {}) {
-    const context = await browser.newContext({ viewport: { width, height }, deviceScaleFactor: 1 });
+export async function openPage(browser, path, { width = 640, height = 480, scale = 1, before = null } = {}) {
+    const context = await browser.newContext({ viewport: { width, height }, deviceScaleFactor: scale });
     const page = await context.newPage();
     const failures = [];
     const requests = [];

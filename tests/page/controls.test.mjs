@@ -112,6 +112,10 @@ test("keys are left to fields that have the focus, and to the browser", () => {
     press("KeyW", slider);
     press("KeyR", button);
     assert.deepEqual(keys.read(), { ...noInput(), thrust: 1, yaw: 1, pitch: 1 });
+    // No field but those that are written into has a use for it.
+    press("Backspace", button);
+    press("Backspace", text);
+    assert.deepEqual(actions, ["reset"]);
 });
 
 test("a gamepad has a dead zone and its whole way", () => {

@@ -28,16 +28,7 @@ const HELD = {
 const PRESSED = { Space: "pause", Backspace: "reset", F1: "help" };
 
 /** Keys that a focused button, slider or list uses itself. */
-const OF_FIELDS = new Set([
-    "Space",
-    "Backspace",
-    "ArrowUp",
-    "ArrowDown",
-    "ArrowLeft",
-    "ArrowRight",
-    "ShiftLeft",
-    "ShiftRight",
-]);
+const OF_FIELDS = new Set(["Space", "ArrowUp", "ArrowDown", "ArrowLeft", "ArrowRight", "ShiftLeft", "ShiftRight"]);
 
 /** Inputs into which nothing is written. */
 const NOT_WRITTEN_INTO = new Set(["range", "checkbox", "radio", "button", "submit", "reset", "color"]);

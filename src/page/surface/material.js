@@ -5,9 +5,9 @@ import { MeshStandardMaterial, Texture } from "three";
 import colorsSource from "../effects/colors.glsl";
 import headLightSource from "../effects/head_light.glsl";
 import lightConeSource from "../light_cone/light_cone.glsl";
+import roundSource from "../shape/round.glsl";
+import roundUvSource from "../shape/round_uv.glsl";
 import placeSource from "./place.glsl";
-import roundSource from "./round.glsl";
-import roundUvSource from "./round_uv.glsl";
 import vertexSource from "./vertex.glsl";
 
 /**

@@ -56,7 +56,7 @@ export class Piece {
     /**
      * @param {Mesh} source The mesh of the file.
      * @param {Vec3} origin The place of its origin relative to the object's, in the rest frame.
-     * @param {import("./round.js").Round | null} round
+     * @param {import("../shape/round.js").Round | null} round
      * @param {import("./material.js").Uniforms} shared Uniforms that all pieces share.
      * @param {{ uniforms: import("./material.js").Uniforms, defines: Defines }} own What the object has beside: that of a black body.
      */
@@ -239,7 +239,7 @@ function properTriangles(geometry) {
     return index.slice(0, kept);
 }
 
-/** @param {import("./round.js").Round} round */
+/** @param {import("../shape/round.js").Round} round */
 function roundUniforms(round) {
     /** @param {number[]} rows */
     const matrix = (rows) => new Matrix3().fromArray(rows).transpose();

@@ -9,9 +9,8 @@ vec3 vertexNormal;
     // The second and third barycentric coordinates of the first and of the second corner of the leaf, and of the third.
     attribute vec4 leafCorners;
     attribute vec2 leafCorner;
-    // The weights of the second and the third corner of the leaf, multiples of `1 / segments`.
+    // The weights of the second and the third corner of the leaf.
     attribute vec2 pattern;
-    uniform float segments;
     // The vertices of the mesh: position and u, normal and v, and as the mesh has them colour, and the second set of u, v.
     uniform highp sampler2D vertexTable;
 

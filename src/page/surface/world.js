@@ -14,12 +14,12 @@ import {
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 
 import { blackBodyUniforms, colorUniforms, definesOf } from "../effects/colors.js";
+import { roundOf } from "../shape/round.js";
 import { orientationOf } from "../spacetime/moment.js";
 import { rotate } from "../spacetime/quaternion.js";
-import { length, scaled, subtract, sum } from "../spacetime/vector.js";
+import { dot, length, scaled, subtract, sum, unit } from "../spacetime/vector.js";
 import { viewOf } from "../spacetime/view.js";
 import { Piece } from "./piece.js";
-import { roundOf } from "./round.js";
 
 /** @typedef {import("../spacetime/vector.js").Vec3} Vec3 */
 /** @typedef {import("../data.js").PageData} PageData */
@@ -31,7 +31,7 @@ import { roundOf } from "./round.js";
 const MOST_LEAVES = 60_000;
 
 /** The part of what is seen that the first view from outside has in its picture. */
-const MOST_SEEN = 0.9;
+const MOST_SEEN = 0.65;
 
 /** How much coarser pictures get, at most, and how quickly they recover. */
 const COARSEST = 64;
@@ -80,24 +80,43 @@ export class World {
     }
 
     /**
-     * A ball that holds most of the photosurfaces, and the observer: in the axes of the scene under the observer's boost.
+     * Where some places of all objects are seen, in the observer's own axes.
      * @param {import("../spacetime/moment.js").Moment} moment
-     * @returns {{ middle: Vec3, radius: number }}
      */
-    seenBall(moment) {
-        const orientation = orientationOf(moment);
-        const seen = this.#objects.flatMap(({ object, pieces }) => {
+    #seenPlaces(moment) {
+        return this.#objects.flatMap(({ object, pieces }) => {
             const view = viewOf(moment, object);
             return pieces.flatMap((piece) => piece.seenPlaces(view, this.#modelOf(object)));
         });
-        const places = seen.map((place) => rotate(orientation, place));
+    }
+
+    /**
+     * The part of the sky in which objects are seen: its middle, a unit vector in the observer's own axes, and the largest
+     * angle from there in radians.
+     * @param {import("../spacetime/moment.js").Moment} moment
+     * @returns {{ middle: Vec3, angle: number }}
+     */
+    partOfSky(moment) {
+        const directions = this.#seenPlaces(moment).map((place) => unit(place, [0, 0, 0]));
+        const middle = unit(
+            directions.reduce((total, direction) => sum(total, direction), [0, 0, 0]),
+            [0, 0, -1],
+        );
+        const least = Math.min(...directions.map((direction) => dot(direction, middle)));
+        return { middle, angle: Math.acos(Math.min(Math.max(least, -1), 1)) };
+    }
+
+    /**
+     * Places around most of the photosurfaces, and the observer's: in the axes of the scene under the observer's boost.
+     * @param {import("../spacetime/moment.js").Moment} moment
+     * @returns {Vec3[]}
+     */
+    nearestSeen(moment) {
+        const orientation = orientationOf(moment);
+        const places = this.#seenPlaces(moment).map((place) => rotate(orientation, place));
         // What is drawn out far ahead would make all else small.
         places.sort((a, b) => length(a) - length(b));
-        const kept = [/** @type {Vec3} */ ([0, 0, 0]), ...places.slice(0, Math.ceil(places.length * MOST_SEEN))];
-        const low = [0, 1, 2].map((axis) => Math.min(...kept.map((place) => place[axis])));
-        const high = [0, 1, 2].map((axis) => Math.max(...kept.map((place) => place[axis])));
-        const middle = /** @type {Vec3} */ (low.map((least, axis) => (least + high[axis]) / 2));
-        return { middle, radius: Math.max(...kept.map((place) => length(subtract(place, middle))), 1e-30) };
+        return [[0, 0, 0], ...places.slice(0, Math.ceil(places.length * MOST_SEEN))];
     }
 
     /**

@@ -8,7 +8,7 @@
  */
 
 import { POINT_NUMBERS, seePoint, sightOf } from "../light_cone/sight.js";
-import { ownPlace, sagAt } from "../surface/round.js";
+import { ownPlace, sagAt } from "../shape/round.js";
 import { CLUSTER_NUMBERS } from "./clusters.js";
 import { halvings, LEAF_HALVINGS, roundHalvings } from "./edge_rule.js";
 import { Leaves } from "./leaves.js";
@@ -60,7 +60,7 @@ export class Tessellation {
     /**
      * @param {Float32Array} positions Three coordinates of each vertex.
      * @param {import("./clusters.js").Clusters} clusters
-     * @param {import("../surface/round.js").Round | null} round The surface that the mesh stands for, if it is curved.
+     * @param {import("../shape/round.js").Round | null} round The surface that the mesh stands for, if it is curved.
      */
     constructor(positions, clusters, round) {
         const vertices = positions.length / 3;
@@ -358,7 +358,7 @@ export class Tessellation {
 
     /**
      * How far the middle between two points of the pool is off the surface: both ends and the middle are moved from the facet.
-     * @param {import("../surface/round.js").Round} round
+     * @param {import("../shape/round.js").Round} round
      * @param {number} a
      * @param {number} b
      */

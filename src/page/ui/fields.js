@@ -22,12 +22,33 @@ export function element(name, className, text = "") {
 }
 
 /**
+ * Gives the keyboard back to flying once a control has been used with a pointer. Who uses the keyboard keeps the focus.
+ * @param {HTMLElement} control
+ * @param {"click" | "change"} isUsed The event after which it has been used.
+ */
+function giveBackKeyboard(control, isUsed) {
+    let isByPointer = false;
+    control.addEventListener("pointerdown", () => {
+        isByPointer = true;
+    });
+    control.addEventListener("keydown", () => {
+        isByPointer = false;
+    });
+    control.addEventListener(isUsed, () => {
+        if (isByPointer) {
+            control.blur();
+        }
+    });
+}
+
+/**
  * @param {string} text
  * @param {() => void} onPress
  */
 export function button(text, onPress) {
     const made = element("button", "button", text);
     made.type = "button";
+    giveBackKeyboard(made, "click");
     made.addEventListener("click", onPress);
     return made;
 }
@@ -60,6 +81,7 @@ export function choice(label, choices, onChange) {
         select.append(new Option(text, value));
     }
     select.addEventListener("change", () => onChange(/** @type {Value} */ (select.value)));
+    giveBackKeyboard(select, "change");
     field.append(element("span", "label", label), select);
     /** @param {Value} value */
     const show = (value) => {
@@ -81,6 +103,7 @@ export function slider(label, { from, to, step }, words, onChange) {
     const written = element("output", "value");
     Object.assign(line, { type: "range", min: String(from), max: String(to), step: String(step) });
     line.addEventListener("input", () => onChange(line.valueAsNumber));
+    giveBackKeyboard(line, "change");
     field.append(element("span", "label", label), line, written);
     /** @param {number} value */
     const show = (value) => {

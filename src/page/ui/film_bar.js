@@ -1,7 +1,7 @@
 /** The bar of the scene's own flight: play, stop, and a line of its proper time with a mark for each step. */
 
 import { words } from "../texts.js";
-import { element, slider, toggle } from "./fields.js";
+import { button, element, slider } from "./fields.js";
 import { numberText } from "./numbers.js";
 
 /** Steps of the line. */
@@ -11,6 +11,8 @@ export class FilmBar {
     element = element("div", "film");
     #film;
     #line;
+    #button;
+    #isPlaying = false;
 
     /**
      * @param {import("../controls/film.js").Film} film
@@ -20,7 +22,7 @@ export class FilmBar {
     constructor(film, steps, on) {
         this.#film = film;
         const duration = film.to - film.from;
-        this.playing = toggle(words.play, on.play);
+        this.#button = button(words.play, () => on.play(!this.#isPlaying));
         this.#line = slider(
             words.filmTime,
             { from: 0, to: STEPS, step: 1 },
@@ -35,7 +37,13 @@ export class FilmBar {
             marks.append(mark);
         }
         this.#line.line.setAttribute("list", marks.id);
-        this.element.append(this.playing.field, this.#line.field, marks);
+        this.element.append(this.#button, this.#line.field, marks);
+    }
+
+    /** @param {boolean} isPlaying */
+    showPlaying(isPlaying) {
+        this.#isPlaying = isPlaying;
+        this.#button.textContent = isPlaying ? words.pause : words.play;
     }
 
     /** Shows the proper time of the film. */

@@ -12,15 +12,18 @@ export class Help {
         for (const [key, meaning] of words.keys) {
             keys.append(element("dt", "key", key), element("dd", "meaning", meaning));
         }
-        const physics = element("p", "physics", words.physics.join(" "));
+        const physics = words.physics.map((sentence) => element("p", "physics", sentence));
+        // First, where the focus begins: then the help is read from its top.
+        const close = button(words.close, () => this.element.close());
+        close.classList.add("close");
         this.element.setAttribute("aria-label", words.help);
         this.element.append(
+            close,
             element("h2", "", words.helpTitle),
-            element("p", "", words.helpMouse),
             keys,
+            element("p", "", words.helpMouse),
             element("h2", "", words.physicsTitle),
-            physics,
-            button(words.close, () => this.element.close()),
+            ...physics,
         );
         this.element.addEventListener("close", onClose);
         this.element.addEventListener("click", (event) => {

@@ -2,8 +2,8 @@
 
 import { words } from "../texts.js";
 
-/** Narrower than this in CSS pixels, the views are one above the other. */
-const NARROW = 700;
+/** Where the page is narrower than this for its height, views beside each other would be too narrow. */
+const NARROW = 1.5;
 
 export class Layout {
     #canvas;
@@ -46,7 +46,7 @@ export class Layout {
      */
     place() {
         const { clientWidth: width, clientHeight: height } = this.#canvas;
-        const isNarrow = width < NARROW;
+        const isNarrow = width < NARROW * height;
         const whole = { x: 0, y: 0, width, height };
         /** @param {number} part */
         const half = (part) =>
@@ -57,6 +57,7 @@ export class Layout {
             observer: this.#layout === "outside" ? null : this.#layout === "both" ? half(0) : whole,
             outside: this.#layout === "observer" ? null : this.#layout === "both" ? half(1) : whole,
         };
+        this.#outside.classList.toggle("below", isNarrow);
         for (const [element, rectangle] of /** @type {const} */ ([
             [this.#observer, rectangles.observer],
             [this.#outside, rectangles.outside],

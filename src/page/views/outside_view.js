@@ -1,6 +1,6 @@
 /** The view from outside: the photosurface as an object that one can look at from anywhere. */
 
-import { Matrix4, PerspectiveCamera, Quaternion, Vector3 } from "three";
+import { Matrix4, PerspectiveCamera, Quaternion, Spherical, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 /** @typedef {import("../spacetime/vector.js").Vec3} Vec3 */
@@ -9,8 +9,25 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 /** Angle of the picture from its lower to its upper edge, in degrees. */
 const FIELD_OF_VIEW_DEG = 40;
 
-/** From where the photosurface is looked at first: obliquely from above, with the motion across the picture. */
-const FIRST_DIRECTION = new Vector3(1, 0.9, 0.4).normalize();
+/** The part of the picture's width that places may fill, and the least part of its height. */
+const FILLED = { across: 0.8, up: 0.4 };
+
+/** The height of captions and of instruments in CSS pixels, between which places are shown. */
+const COVERED = 85;
+
+const UP = new Vector3(0, 1, 0);
+
+/**
+ * From where the photosurface is looked at first: obliquely from above, with the motion across the picture, to the right.
+ * @param {Vector3} motion A unit vector.
+ */
+function firstSide(motion) {
+    const across = motion.clone().cross(UP);
+    if (across.length() < 0.1) {
+        across.set(1, 0, 0);
+    }
+    return across.normalize().addScaledVector(UP, 0.9).addScaledVector(motion, -0.4).normalize();
+}
 
 /**
  * A camera that moves around the photosurface. Its axes are those of the scene under a pure boost, so that nothing turns
@@ -29,7 +46,7 @@ export class OutsideView {
         this.camera.layers.enableAll();
         this.#controls = new OrbitControls(this.#orbit, element);
         this.#controls.enableDamping = false;
-        this.#orbit.position.copy(FIRST_DIRECTION);
+        this.#orbit.position.set(0, 0, 1);
     }
 
     /**
@@ -41,27 +58,56 @@ export class OutsideView {
     }
 
     /**
-     * Looks at a ball from where the camera is now, so that all of it is in the picture.
-     * @param {{ middle: Vec3, radius: number }} ball
-     * @param {number} aspect Width of the picture over its height.
+     * Looks at places from the side, so that all of them are in the picture.
+     * @param {readonly Vec3[]} places
+     * @param {Vec3} motion How the observer moves, a unit vector.
+     * @param {{ width: number, height: number }} size Of the picture, in CSS pixels.
      */
-    frame({ middle, radius }, aspect) {
-        const direction = this.#orbit.position.clone().sub(this.#controls.target).normalize();
-        const half = Math.tan(((FIELD_OF_VIEW_DEG / 2) * Math.PI) / 180) * Math.min(aspect, 1);
-        const distance = radius / Math.sin(Math.atan(half));
-        this.#controls.target.set(...middle);
-        this.#orbit.position.copy(this.#controls.target).addScaledVector(direction, distance);
+    frame(places, motion, { width, height }) {
+        const back = firstSide(new Vector3(...motion));
+        const right = UP.clone().cross(back).normalize();
+        const axes = [right, back.clone().cross(right), back];
+        const along = places.map((place) => axes.map((axis) => axis.dot(new Vector3(...place))));
+        const middle = axes.map((_, axis) => {
+            const parts = along.map((place) => place[axis]);
+            return (Math.min(...parts) + Math.max(...parts)) / 2;
+        });
+        const halfUp = Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360);
+        const halfAcross = (halfUp * width) / Math.max(height, 1);
+        const limits = [halfAcross * FILLED.across, halfUp * Math.max(1 - (2 * COVERED) / height, FILLED.up)];
+        const distances = along.map((place) => {
+            const [across, up, towards] = place.map((part, axis) => part - middle[axis]);
+            return towards + Math.max(Math.abs(across) / limits[0], Math.abs(up) / limits[1]);
+        });
+        this.#controls.target.set(0, 0, 0);
+        axes.forEach((axis, index) => {
+            this.#controls.target.addScaledVector(axis, middle[index]);
+        });
+        this.#orbit.position.copy(this.#controls.target).addScaledVector(back, Math.max(...distances));
         this.#controls.update();
     }
 
-    /** Where the camera is and at what it looks, in the axes of the scene under the boost. */
-    get pose() {
-        return { position: this.#orbit.position.toArray(), target: this.#controls.target.toArray() };
+    /**
+     * Moves the camera around what it looks at.
+     * @param {number} left Radians.
+     * @param {number} up Radians.
+     */
+    turn(left, up) {
+        const { target } = this.#controls;
+        const arm = new Spherical().setFromVector3(this.#orbit.position.clone().sub(target));
+        arm.theta -= left;
+        arm.phi -= up;
+        this.#orbit.position.setFromSpherical(arm.makeSafe()).add(target);
+        this.#controls.update();
     }
 
-    set pose({ position, target }) {
-        this.#orbit.position.fromArray(position);
-        this.#controls.target.fromArray(target);
+    /**
+     * Moves the camera nearer to what it looks at, or farther away.
+     * @param {number} factor
+     */
+    zoom(factor) {
+        const { target } = this.#controls;
+        this.#orbit.position.sub(target).multiplyScalar(factor).add(target);
         this.#controls.update();
     }
 

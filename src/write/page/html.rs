@@ -151,7 +151,10 @@ mod tests {
         let (_, after) = whole.split_once("id=\"scene\">").unwrap();
         let (json, _) = after.split_once("</script>").unwrap();
         let read: serde_json::Value = serde_json::from_str(json).unwrap();
-        assert_eq!((&read["title"], &read["name"]), (&wild.into(), &"\u{2028}".into()));
+        assert_eq!(
+            (&read["title"], &read["name"]),
+            (&wild.into(), &"\u{2028}".into())
+        );
     }
 
     #[test]

@@ -179,6 +179,46 @@ fn flights_come_from_files() {
         .error(&["nosuch.json"]);
 }
 
+/// The scene of a flight, with words in place of it.
+fn flying(flight: &str) -> String {
+    BALL.replacen(
+        r#""observer": {"#,
+        &format!(r#""observer": {{ {flight}"#),
+        1,
+    )
+}
+
+#[test]
+fn a_flight_is_left_out() {
+    let workplace = Workplace::new();
+    let flight = r#""flight": [{ "proper_time": 670, "acceleration": [0.5, 0.1, 0] }],
+        "integrator": { "rk4": 0.125 }, "#;
+    workplace.write("flying.json", flying(flight));
+    workplace.write("straight.json", flying(""));
+    let export = |line: &str| {
+        let run = workplace.run(&format!("export {line} -o out.glb --steps 1,3"));
+        assert!(run.status < 2, "{run}");
+        workplace.read("out.glb")
+    };
+    let straight = export("straight.json");
+    assert!(straight != export("flying.json"));
+    assert!(straight == export("flying.json --no-flight"));
+    // The flight starts at another speed, and is refused there.
+    workplace
+        .run("export flying.json -o none.glb --rapidity 10")
+        .error(&["flight[0] ends at rapidity"]);
+    export("flying.json --rapidity 10 --no-flight");
+    workplace.write("list.json", "[]");
+    for flag in ["--flight list.json", "--integrator exact"] {
+        workplace
+            .run(&format!("export flying.json --no-flight {flag}"))
+            .error(&["cannot be used with", "--no-flight"]);
+    }
+    workplace
+        .run("render flying.json --searchlight --no-searchlight")
+        .error(&["cannot be used with", "--no-searchlight"]);
+}
+
 #[test]
 fn impossible_flags_are_refused_by_name() {
     let workplace = Workplace::with_ball();

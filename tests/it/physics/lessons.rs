@@ -1,9 +1,10 @@
 //! What lessons say of built-in scenes, in the scenes themselves.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use photosurface::light_cone::View;
 use photosurface::scene::BuiltInScene;
 use photosurface::{Object, Scene};
+use serde_json::{Value, json};
 
 fn scene(name: &str) -> Scene {
     let built_in = BuiltInScene::named(name).expect("a built-in scene");
@@ -147,4 +148,87 @@ fn a_rod_along_the_motion_is_long_and_then_short() {
             "{y}: {seen} {expected}"
         );
     }
+}
+
+/// The view of the scene `flight`, at rest in its frame, from a place on the line of the flight at this speed towards -z.
+///
+/// Points are relative to the middle of the ground, as [`GROUND`] is.
+fn view_in_flight(z: f64, beta: f64) -> View {
+    let built_in = BuiltInScene::named("flight").expect("a built-in scene");
+    let mut scene: Value = serde_json::from_str(built_in.json).expect("JSON");
+    let velocity = json!({ "beta": beta, "direction": [0, 0, -1] });
+    scene["observer"] = json!({ "position": [0, 2, z], "velocity": velocity });
+    scene["steps"] = json!([0]);
+    let scene = Scene::from_json(&scene.to_string()).expect("a scene");
+    let ground = &scene.objects()[0];
+    assert_eq!(ground.name, "ground");
+    view(&scene, ground, 0.0)
+}
+
+/// Where the ground of the scene `flight` is.
+const GROUND: DVec3 = DVec3::new(0.0, 0.0, -14.0);
+
+/// The angle between a place in the observer's frame and straight ahead, in degrees.
+fn angle_from_ahead(place: DVec3) -> f64 {
+    place.angle_between(DVec3::NEG_Z).to_degrees()
+}
+
+#[test]
+fn the_ring_recedes_and_then_comes_from_behind() {
+    // Its middle, after four seconds of thrust.
+    let middle = DVec3::new(0.0, 3.0, -10.0) - GROUND;
+    let [at_rest, in_flight] =
+        [0.0, 0.923].map(|beta| view_in_flight(-3.6, beta).seen_position(middle).length());
+    assert!((at_rest - 6.5).abs() < 0.05, "{at_rest}");
+    assert!((in_flight - 32.0).abs() < 0.5, "{in_flight}");
+    // Its top, 5.5 units behind.
+    let top = DVec3::new(0.0, 6.0, -10.0) - GROUND;
+    let [at_rest, in_flight] =
+        [0.0, 0.997].map(|beta| angle_from_ahead(view_in_flight(-15.5, beta).seen_position(top)));
+    assert!((at_rest - 144.0).abs() < 0.5, "{at_rest}");
+    assert!((in_flight - 14.0).abs() < 0.5, "{in_flight}");
+    let half_tangent = |degrees: f64| (degrees.to_radians() / 2.0).tan();
+    let stretch = ((1.0 + 0.997_f64) / (1.0 - 0.997)).sqrt();
+    let ratio = half_tangent(at_rest) / half_tangent(in_flight);
+    assert!((ratio / stretch - 1.0).abs() < 1e-9, "{ratio} {stretch}");
+}
+
+#[test]
+fn the_sphere_in_flight_is_a_circle_and_a_cigar() {
+    let view = view_in_flight(0.0, 0.95);
+    let (middle, radius) = (DVec3::new(5.0, 1.5, -6.0) - GROUND, 1.5);
+    let offset = middle - view.observer_rest();
+    let (towards, sine) = (offset.normalize(), radius / offset.length());
+    let side = towards.any_orthonormal_vector();
+    // The outline: where lines from the observer touch the sphere.
+    let outline: Vec<DVec3> = (0..360)
+        .map(|degrees| {
+            let turn = DQuat::from_axis_angle(towards, f64::from(degrees).to_radians());
+            let from_middle = turn * side * (1.0 - sine * sine).sqrt() - towards * sine;
+            let point = middle + radius * from_middle;
+            view.seen_position(point).normalize()
+        })
+        .collect();
+    // The axis of the cone through the outline, from three of its lines.
+    let axis = (outline[120] - outline[0])
+        .cross(outline[240] - outline[0])
+        .normalize();
+    for line in &outline {
+        let angle = line.dot(axis).abs().acos().to_degrees();
+        assert!((angle - 2.0).abs() < 0.005, "{angle}");
+    }
+    let seen: Vec<DVec3> = (0..=20_000)
+        .map(|number| {
+            // Points on a spiral, even on the sphere.
+            let height = 1.0 - f64::from(number) / 10_000.0;
+            let around = DQuat::from_rotation_y(2.399_963 * f64::from(number)) * DVec3::X;
+            let level = (1.0 - height * height).max(0.0).sqrt();
+            view.seen_position(middle + radius * (level * around + height * DVec3::Y))
+        })
+        .collect();
+    let most = seen.iter().copied().reduce(DVec3::max).expect("points");
+    let least = seen.iter().copied().reduce(DVec3::min).expect("points");
+    let [thick, _, long] = (most - least).to_array();
+    assert!((long - 17.6).abs() < 0.05, "{long}");
+    assert!((thick - 3.0).abs() < 0.02, "{thick}");
 }

@@ -1,4 +1,4 @@
-//! The pictures of the README and of the lessons are those that the program draws today.
+//! The pictures of the README and of the lessons, and the sample page, are those that the program makes today.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -39,6 +39,20 @@ fn gallery_pictures_are_what_their_commands_draw() {
         stale.is_empty(),
         "not what the program draws today:\n{}\ndraw anew: python examples/gallery/draw.py target/release/photosurface",
         stale.join("\n")
+    );
+}
+
+#[test]
+fn the_sample_page_is_what_the_program_writes() {
+    let there = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/gallery/flight.html");
+    let workplace = Workplace::new();
+    workplace
+        .run("page --example flight -q -o flight.html")
+        .success();
+    assert!(
+        std::fs::read(there).unwrap_or_default() == workplace.read("flight.html"),
+        "flight.html is not what the program writes today\nwrite anew: python examples/gallery/draw_page.py \
+         target/release/photosurface --page"
     );
 }
 
