@@ -83,7 +83,13 @@ async function heap(page, frames) {
         for (let frame = 1; frame <= frames; frame++) {
             const [x, y, z] = first.position;
             const position = [x + Math.sin(frame / 50), y, z - (frame % 500) / 20];
-            viewer.moment = { ...first, position, event: [frame / 100, ...position, 0, 0, 0, 0], time: frame / 100, properTime: frame / 100 };
+            viewer.moment = {
+                ...first,
+                position,
+                event: [frame / 100, ...position, 0, 0, 0, 0],
+                time: frame / 100,
+                properTime: frame / 100,
+            };
             viewer.frame(frame * 16);
             if (frame % (frames / 10) === 0) {
                 await new Promise((resolve) => setTimeout(resolve));
@@ -107,7 +113,10 @@ function million(folder) {
     let at = 0;
     for (let cell = 0; cell < SIDE * SIDE; cell++) {
         const first = Math.floor(cell / SIDE) * (SIDE + 1) + (cell % SIDE);
-        for (const corners of [[0, SIDE + 1, 1], [1, SIDE + 1, SIDE + 2]]) {
+        for (const corners of [
+            [0, SIDE + 1, 1],
+            [1, SIDE + 1, SIDE + 2],
+        ]) {
             faces[at] = 3;
             corners.forEach((corner, k) => faces.writeUInt32LE(first + corner, at + 1 + 4 * k));
             at += 13;
@@ -116,7 +125,10 @@ function million(folder) {
     const header = ["ply", "format binary_little_endian 1.0", `element vertex ${count}`];
     header.push("property float x", "property float y", "property float z", `element face ${2 * SIDE * SIDE}`);
     header.push("property list uchar uint vertex_indices", "end_header\n");
-    writeFileSync(join(folder, "million.ply"), Buffer.concat([Buffer.from(header.join("\n")), Buffer.from(places.buffer), faces]));
+    writeFileSync(
+        join(folder, "million.ply"),
+        Buffer.concat([Buffer.from(header.join("\n")), Buffer.from(places.buffer), faces]),
+    );
     return { observer: { position: [0, 2, 4] }, objects: [{ name: "hills", file: "million.ply" }] };
 }
 
@@ -136,20 +148,38 @@ await inBrowser(async (browser, folder) => {
         await show(page, { layout: "both" }, moments[0]);
         const times = await timesOfWork(page, moments);
         const slowest = times.toSorted((a, b) => a - b)[Math.floor(0.95 * FRAMES)];
-        row(`${name}: work of a frame outside the graphics processor, median`, `${median(times).toFixed(1)} ms`, `${goal} ms`);
+        row(
+            `${name}: work of a frame outside the graphics processor, median`,
+            `${median(times).toFixed(1)} ms`,
+            `${goal} ms`,
+        );
         row(`${name}: the same, 19 of 20 frames`, `${slowest.toFixed(1)} ms`, "");
         await context.close();
     }
     for (const layout of ["observer", "outside", "both"]) {
-        const { page, context } = await openPage(browser, writePage(folder, ["--example", "flight"]), { width: 800, height: 600 });
+        const { page, context } = await openPage(browser, writePage(folder, ["--example", "flight"]), {
+            width: 800,
+            height: 600,
+        });
         await show(page, { layout }, moments[0]);
-        const { seen, rest } = await timesOfDrawing(page, moments.filter((_, k) => k % Math.ceil(FRAMES / PAIRS) === 0));
+        const { seen, rest } = await timesOfDrawing(
+            page,
+            moments.filter((_, k) => k % Math.ceil(FRAMES / PAIRS) === 0),
+        );
         const ratio = median(seen) / median(rest);
-        row(`views "${layout}": frame as seen over the same with models at rest`, `${ratio.toFixed(2)} (${median(seen).toFixed(0)} ms)`, "1.25");
+        row(
+            `views "${layout}": frame as seen over the same with models at rest`,
+            `${ratio.toFixed(2)} (${median(seen).toFixed(0)} ms)`,
+            "1.25",
+        );
         await context.close();
     }
     const { page } = await openPage(browser, writePage(folder, ["--example", "flight"]), { width: 320, height: 240 });
     await show(page, { layout: "both", diagram: true }, moments[0]);
     const sizes = await heap(page, HEAP_FRAMES);
-    row(`heap after ${HEAP_FRAMES / 10} and ${HEAP_FRAMES} frames`, `${(sizes[0] / 1e6).toFixed(1)} and ${(sizes.at(-1) / 1e6).toFixed(1)} MB`, "equal");
+    row(
+        `heap after ${HEAP_FRAMES / 10} and ${HEAP_FRAMES} frames`,
+        `${(sizes[0] / 1e6).toFixed(1)} and ${(sizes.at(-1) / 1e6).toFixed(1)} MB`,
+        "equal",
+    );
 });

@@ -61,7 +61,10 @@ export function writePage(folder, input, change = (html) => html) {
         writeFileSync(join(folder, "scene.json"), JSON.stringify(input));
         words = ["scene.json"];
     }
-    execFileSync(binary(), ["page", ...words, "-q", "-o", "page.html"], { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
+    execFileSync(binary(), ["page", ...words, "-q", "-o", "page.html"], {
+        cwd: folder,
+        stdio: ["ignore", "pipe", "pipe"],
+    });
     const path = join(folder, "page.html");
     writeFileSync(path, change(readFileSync(path, "utf8")));
     return path;
@@ -97,10 +100,17 @@ export async function openPage(browser, path, { width = 640, height = 480, scale
     }
     const address = pathToFileURL(path).href;
     await page.goto(address);
-    await page.waitForFunction(() => globalThis.photosurface !== undefined, null, { timeout: 120_000 }).catch((error) => {
-        throw new Error(`the page did not start: ${failures.join("\n")}\n${error}`);
-    });
-    return { page, context, failures, requests: () => requests.filter((url) => !/^(data|blob):/.test(url) && url !== address) };
+    await page
+        .waitForFunction(() => globalThis.photosurface !== undefined, null, { timeout: 120_000 })
+        .catch((error) => {
+            throw new Error(`the page did not start: ${failures.join("\n")}\n${error}`);
+        });
+    return {
+        page,
+        context,
+        failures,
+        requests: () => requests.filter((url) => !/^(data|blob):/.test(url) && url !== address),
+    };
 }
 
 /** What the page shows in a test unless the test says otherwise: the observer's view alone, standing still. */

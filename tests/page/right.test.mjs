@@ -86,7 +86,10 @@ function contentOf(path) {
     const html = readFileSync(path, "utf8");
     const text = (id) => new RegExp(`id="${id}">([^<]*)<`).exec(html)[1];
     const bytes = Buffer.from(text("meshes"), "base64");
-    return { data: JSON.parse(text("scene")), glb: JSON.parse(bytes.toString("utf8", 20, 20 + bytes.readUInt32LE(12))) };
+    return {
+        data: JSON.parse(text("scene")),
+        glb: JSON.parse(bytes.toString("utf8", 20, 20 + bytes.readUInt32LE(12))),
+    };
 }
 
 /** The pieces of the page: for each mesh its object, and where the origin of its node is in the object's rest frame. */
@@ -123,7 +126,9 @@ function positions({ results, projection, camera }, data, glb, observer, state) 
         }
     }
     const { rapidity, direction, ...where } = observer;
-    const expected = verticesSeen({ ...where, velocity: { rapidity, direction } }, objects, 0, meshes).filter((_, k) => k % 3 === 0);
+    const expected = verticesSeen({ ...where, velocity: { rapidity, direction } }, objects, 0, meshes).filter(
+        (_, k) => k % 3 === 0,
+    );
     assert.equal(expected.length, found.length);
     const errors = found.map((place, k) => Math.hypot(...subtract(place, expected[k])) / Math.hypot(...expected[k]));
     const leaves = results.filter(({ isLeaf }) => isLeaf).reduce((count, { rest }) => count + rest.length / 3, 0);

@@ -3,7 +3,9 @@
 const AHEAD = [0, 0, -1];
 
 /** Meshes that a scene may name are beside it. */
-const MESHES = ["asteroid.glb", "colors_f32.glb"].map((name) => new URL(`../../fixtures/meshes/${name}`, import.meta.url));
+const MESHES = ["asteroid.glb", "colors_f32.glb"].map(
+    (name) => new URL(`../../fixtures/meshes/${name}`, import.meta.url),
+);
 
 /** A turn by an angle in degrees about an axis. */
 function turn(degrees, [x, y, z]) {
@@ -25,7 +27,12 @@ const MOVING = {
     observer: { position: [0, 0, 0] },
     objects: [
         { name: "ground", shape: { grid: { size: 40, cells: 20 } }, position: [0, -2, 0] },
-        { name: "ball", shape: { sphere: { radius: 1 } }, position: [-3, 0, -7], velocity: { gamma: 3, direction: [1, 0, 0] } },
+        {
+            name: "ball",
+            shape: { sphere: { radius: 1 } },
+            position: [-3, 0, -7],
+            velocity: { gamma: 3, direction: [1, 0, 0] },
+        },
         {
             name: "crate",
             shape: { box: { size: [2, 1, 3] } },
@@ -52,10 +59,30 @@ const ROUND = {
     observer: { position: [0, 0, 0] },
     objects: [
         { name: "ball", shape: { sphere: { radius: 1 } }, position: [-2, 1.4, -5], scale: [1, 0.6, 1.5] },
-        { name: "cone", shape: { cone: { radius: 1, height: 2 } }, position: [2, 1.4, -5], rotation: turn(40, [1, 0, 1]) },
-        { name: "column", shape: { cylinder: { radius: 0.8, height: 2 } }, position: [-2, -1.4, -5], rotation: turn(70, [1, 1, 0]) },
-        { name: "ring", shape: { torus: { major_radius: 1, minor_radius: 0.3 } }, position: [2, -1.4, -5], rotation: turn(-50, [1, 0, 0]) },
-        { name: "rod", shape: { rod: { radius: 0.1, length: 4 } }, position: [0, 0, -6], rotation: turn(15, [0, 0, 1]) },
+        {
+            name: "cone",
+            shape: { cone: { radius: 1, height: 2 } },
+            position: [2, 1.4, -5],
+            rotation: turn(40, [1, 0, 1]),
+        },
+        {
+            name: "column",
+            shape: { cylinder: { radius: 0.8, height: 2 } },
+            position: [-2, -1.4, -5],
+            rotation: turn(70, [1, 1, 0]),
+        },
+        {
+            name: "ring",
+            shape: { torus: { major_radius: 1, minor_radius: 0.3 } },
+            position: [2, -1.4, -5],
+            rotation: turn(-50, [1, 0, 0]),
+        },
+        {
+            name: "rod",
+            shape: { rod: { radius: 0.1, length: 4 } },
+            position: [0, 0, -6],
+            rotation: turn(15, [0, 0, 1]),
+        },
     ],
 };
 
@@ -74,16 +101,48 @@ const LATTICE = ["--example", "lattice"];
 export const STATES = [
     { name: "the built-in flight", input: FLIGHT, observer: observer([0, 2, 0], 3.2) },
     { name: "gamma 20", input: FLIGHT, observer: observer([0, 2, 0], 20) },
-    { name: "gamma 20, nearly on the ground", input: FLIGHT, observer: observer([1.3, 0.05, -14.3], 20, [0.6, 0, -0.8], turn(-30, [0, 1, 0])) },
+    {
+        name: "gamma 20, nearly on the ground",
+        input: FLIGHT,
+        observer: observer([1.3, 0.05, -14.3], 20, [0.6, 0, -0.8], turn(-30, [0, 1, 0])),
+    },
     { name: "grazing a wall", input: WALLS, observer: observer([0.97, 0, 0], 5) },
     { name: "in a lattice", input: LATTICE, observer: observer([0.5, 0.5, 0.2], 2.3) },
-    { name: "in a lattice at gamma 20", input: LATTICE, observer: observer([0.5, -0.5, 1.5], 20, [0.48, 0.6, -0.64], turn(25, [1, 1, 0])) },
-    { name: "objects of different velocities", input: MOVING, observer: observer([0.5, 0, 1], 1.2, [-1, 0, 0.4], turn(12, [0, 1, 1]), 2.5) },
+    {
+        name: "in a lattice at gamma 20",
+        input: LATTICE,
+        observer: observer([0.5, -0.5, 1.5], 20, [0.48, 0.6, -0.64], turn(25, [1, 1, 0])),
+    },
+    {
+        name: "objects of different velocities",
+        input: MOVING,
+        observer: observer([0.5, 0, 1], 1.2, [-1, 0, 0.4], turn(12, [0, 1, 1]), 2.5),
+    },
     { name: "round shapes", input: ROUND, observer: observer([0, 0.2, 1], 6, [0.3, 0.1, -1]) },
     { name: "Doppler effect", input: FLIGHT, observer: observer([0, 2, 0], 2), state: { doppler: "spectrum" } },
     { name: "Doppler factor", input: MOVING, observer: observer([0, 0.5, 1], 1.5), state: { doppler: "ramp" } },
-    { name: "searchlight", input: FLIGHT, observer: observer([0, 2, 0], 1.5), state: { doppler: "spectrum", searchlight: true, exposure: -3 } },
-    { name: "travel time alone", input: MOVING, observer: observer([0.5, 0, 1], 2, AHEAD, turn(90, [0, 0, 1])), state: { model: "delayed" } },
-    { name: "contraction alone", input: ROUND, observer: observer([0, 0, 1], 3, [1, 0, 0]), state: { model: "contracted", look: [0.2, -0.1] } },
-    { name: "texture and colours of vertices", input: FILES, files: MESHES, observer: observer([0, 0, 0], 1.6, [0.5, 0, -1]) },
+    {
+        name: "searchlight",
+        input: FLIGHT,
+        observer: observer([0, 2, 0], 1.5),
+        state: { doppler: "spectrum", searchlight: true, exposure: -3 },
+    },
+    {
+        name: "travel time alone",
+        input: MOVING,
+        observer: observer([0.5, 0, 1], 2, AHEAD, turn(90, [0, 0, 1])),
+        state: { model: "delayed" },
+    },
+    {
+        name: "contraction alone",
+        input: ROUND,
+        observer: observer([0, 0, 1], 3, [1, 0, 0]),
+        state: { model: "contracted", look: [0.2, -0.1] },
+    },
+    {
+        name: "texture and colours of vertices",
+        input: FILES,
+        files: MESHES,
+        observer: observer([0, 0, 0], 1.6, [0.5, 0, -1]),
+    },
 ];

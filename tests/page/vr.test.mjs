@@ -22,13 +22,21 @@ test("VR starts, each eye has its own light cone, and a thumbstick changes the s
         const path = writePage(folder, ["--example", "cube"]);
         const { page, failures, requests } = await openPage(browser, path, { width: 1000, before: putOnHeadset });
         const direction = [0.6, 0, -0.8];
-        const start = momentOf({ time: 0, position: [0, 0, 6], rapidity: Math.acosh(GAMMA), direction, orientation: [0, 0, 0, 1] });
+        const start = momentOf({
+            time: 0,
+            position: [0, 0, 6],
+            rapidity: Math.acosh(GAMMA),
+            direction,
+            orientation: [0, 0, 0, 1],
+        });
         await show(page, {}, start);
         const label = words.enterVr;
         await page.evaluate((label) => {
             [...document.querySelectorAll("button")].find((button) => button.textContent.trim() === label).click();
         }, label);
-        await page.waitForFunction(() => globalThis.photosurface.views.renderer.xr.isPresenting, null, { timeout: 60_000 });
+        await page.waitForFunction(() => globalThis.photosurface.views.renderer.xr.isPresenting, null, {
+            timeout: 60_000,
+        });
 
         // The uniforms of a mesh at each of its draws.
         const eyes = await page.evaluate(
@@ -45,7 +53,11 @@ test("VR starts, each eye has its own light cone, and a thumbstick changes the s
                             return place && Array.from(gl.getUniform(program, place));
                         };
                         if (value("eye")) {
-                            drawn.push({ eye: value("eye"), pivot: value("pivotHigh"), viewport: Array.from(gl.getParameter(gl.VIEWPORT)) });
+                            drawn.push({
+                                eye: value("eye"),
+                                pivot: value("pivotHigh"),
+                                viewport: Array.from(gl.getParameter(gl.VIEWPORT)),
+                            });
                         }
                         own.apply(gl, args);
                         if (drawn.length === 2 * world.group.children.length) {
@@ -71,7 +83,8 @@ test("VR starts, each eye has its own light cone, and a thumbstick changes the s
             const frames = (count) =>
                 new Promise((resolve) => {
                     const session = viewer.views.renderer.xr.getSession();
-                    const next = (left) => (left === 0 ? resolve() : session.requestAnimationFrame(() => next(left - 1)));
+                    const next = (left) =>
+                        left === 0 ? resolve() : session.requestAnimationFrame(() => next(left - 1));
                     next(count);
                 });
             const frame = () => JSON.stringify(viewer.moment.frame);
