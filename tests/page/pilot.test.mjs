@@ -54,3 +54,19 @@ test("a film stays at its end", () => {
     assert.equal(pilot.moment.properTime, 4);
     assert.ok(pilot.film.isAtEnd);
 });
+
+test("who begins to fly ends a pause, but not with a key that is still down", () => {
+    const device = { input: noInput(), read: () => device.input };
+    const pilot = new Pilot(SCENE, 60, [device]);
+    const paused = { ...STATE, film: false, paused: true };
+    assert.equal(pilot.frame(FRAME, paused), false);
+    device.input = { ...noInput(), thrust: 1 };
+    assert.equal(pilot.frame(FRAME, paused), true);
+    assert.equal(pilot.frame(FRAME, { ...paused, paused: false }), false);
+    assert.equal(pilot.frame(FRAME, paused), false);
+    // The engines still follow, but the key is pressed again.
+    device.input = noInput();
+    assert.equal(pilot.frame(FRAME, paused), false);
+    device.input = { ...noInput(), yaw: 1 };
+    assert.equal(pilot.frame(FRAME, paused), true);
+});

@@ -52,6 +52,7 @@ export class Controls {
     #thrust;
     #devices;
     #now = noInput();
+    #isHeld = false;
 
     /**
      * @param {number} thrust As {@link thrustFor} gives it.
@@ -62,10 +63,14 @@ export class Controls {
         this.#devices = devices;
     }
 
-    /** Whether someone wants to fly. */
+    /** Whether someone flies: the engines still follow a hand that has let go. */
     get isActive() {
-        const { thrust, yaw, pitch, roll, brake } = this.#now;
-        return brake || thrust !== 0 || yaw !== 0 || pitch !== 0 || roll !== 0;
+        return isAny(this.#now);
+    }
+
+    /** Whether a hand is at a control. */
+    get isHeld() {
+        return this.#isHeld;
     }
 
     /** Forgets what was asked for, as when the observer starts again. */
@@ -81,6 +86,7 @@ export class Controls {
      */
     read(seconds, timeScale) {
         const wanted = sumOfInputs(this.#devices.map((device) => device.read()));
+        this.#isHeld = isAny(wanted);
         const part = -Math.expm1(-seconds / SMOOTH_SECONDS);
         /** @param {number} now @param {number} wanted */
         const followed = (now, wanted) => {
@@ -102,4 +108,9 @@ export class Controls {
             brake: brake ? this.#thrust * (strong ? STRONG : 1) * BRAKE : 0,
         };
     }
+}
+
+/** @param {Input} input */
+function isAny({ thrust, yaw, pitch, roll, brake }) {
+    return brake || thrust !== 0 || yaw !== 0 || pitch !== 0 || roll !== 0;
 }

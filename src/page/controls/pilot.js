@@ -59,12 +59,14 @@ export class Pilot {
      * Flies on for a frame.
      * @param {number} seconds Since the last frame.
      * @param {PilotState} state
-     * @returns {boolean} Whether the person has taken over from the film, which ends then.
+     * @returns {boolean} Whether the person has taken over: from the film, which ends then, or from the pause.
      */
     frame(seconds, { paused, timeScale, steering, film }) {
         const time = Math.min(Math.max(seconds, 0), LONGEST_FRAME);
+        const wasHeld = this.#controls.isHeld;
         const command = this.#controls.read(time, timeScale);
-        const takesOver = film && this.#controls.isActive;
+        // Who pauses with a key still down wants a pause.
+        const takesOver = (film && this.#controls.isActive) || (paused && this.#controls.isHeld && !wasHeld);
         const dTau = paused ? 0 : time * timeScale;
         if (film && !takesOver) {
             this.film.play(dTau);

@@ -130,7 +130,7 @@ export class Panel {
         const exposure = slider(
             words.exposure,
             { from: -12, to: 12, step: 0.25 },
-            (stops) => words.stops(stops.toFixed(2)),
+            (stops) => words.stops(stops.toFixed(2).replace("-", "−")),
             (stops) => store.change({ exposure: stops }),
         );
         store.subscribe(["doppler"], (state) => doppler.show(state.doppler));
