@@ -9,8 +9,12 @@
 import { join } from "node:path";
 import { inBrowser, openPage } from "../../tests/page/browser.mjs";
 
-/** From where the photosurface is looked at, in the observer's frame: the observer is at the left, and near things fill the view. */
-const POSE = { position: [68, 40, 4], target: [0, 2, -27] };
+/** Places that the view from outside is filled with, in the observer's frame: the observer, and things near it ahead. */
+const NEAR = [
+    [0, 0, 2],
+    [-6, 0, -52],
+    [6, 0, -52],
+];
 
 /** CSS pixels. At this width the page shows its title; the pictures are 900 pixels wide. */
 const [WIDTH, HEIGHT, PIXELS_WIDE] = [1000, 500, 900];
@@ -25,13 +29,14 @@ await inBrowser(async (browser) => {
     const { page } = await openPage(browser, path, { width: WIDTH, height: HEIGHT, scale: PIXELS_WIDE / WIDTH });
     await page.getByRole("button", { name: "Settings" }).click();
     await page.mouse.move(WIDTH / 2, HEIGHT / 2);
-    await page.evaluate((pose) => {
+    await page.evaluate((places) => {
         const { photosurface } = globalThis;
         photosurface.views.renderer.setAnimationLoop(null);
         document.querySelector(".toast").hidden = true;
         photosurface.drawNow();
-        photosurface.views.outside.pose = pose;
-    }, POSE);
+        const size = document.getElementById("outside-view").getBoundingClientRect();
+        photosurface.views.outside.frame(places, [0, 0, -1], size);
+    }, NEAR);
     for (let frame = 0; frame < Number(count); frame++) {
         await page.evaluate(
             ([part, now]) => {
