@@ -167,11 +167,13 @@ export class Piece {
     #upload() {
         const { changed, leaves } = this.#tessellation;
         const index = /** @type {BufferAttribute} */ (this.#mesh.geometry.index);
-        index.clearUpdateRanges();
+        // Ranges of an update that was not drawn are still to be uploaded; three.js clears them then.
         for (const [start, count] of changed) {
             index.addUpdateRange(start, count);
         }
-        index.needsUpdate = changed.length > 0;
+        if (changed.length > 0) {
+            index.needsUpdate = true;
+        }
         leaves.forEach((list, halvings) => {
             const own = this.#leaves[halvings];
             own.geometry.show(list);

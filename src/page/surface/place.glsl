@@ -1,3 +1,6 @@
+// Vertices that a leaf shares with a whole triangle come out the same in both programs.
+invariant gl_Position;
+
 // Where the vertex is drawn: the axes of the picture are the observer's own, the observer at their origin.
 
 // From the axes of the rest frame, boosted by the motion, to the observer's own.

@@ -34,7 +34,7 @@ const MOST_LEAVES = 60_000;
 const MOST_SEEN = 0.65;
 
 /** How much coarser pictures get, at most, and how quickly they recover. */
-const COARSEST = 64;
+const COARSEST = 1024;
 const RECOVERY = 0.97;
 
 export class World {
@@ -185,22 +185,34 @@ export class World {
      */
     update(moment, sharpness) {
         const start = performance.now();
+        const views = this.#objects.map(({ object }) => viewOf(moment, object));
+        // Where there are too many leaves, all is made coarser at once: triangles that stay coarse alone would leave cracks.
+        while (!this.#place(views, sharpness) && this.#coarseness < COARSEST) {
+            this.#coarseness *= 2;
+        }
+        this.#coarseness = Math.max(this.#coarseness * RECOVERY, 1);
+        this.spent = performance.now() - start;
+    }
+
+    /**
+     * Moves everything to where it is seen; false if there is no room for so many leaves.
+     * @param {import("../spacetime/view.js").View[]} views One for each object.
+     * @param {Sharpness} sharpness
+     */
+    #place(views, sharpness) {
         const coarse = {
             ...sharpness,
             observer: sharpness.observer * this.#coarseness,
             outside: sharpness.outside * this.#coarseness,
         };
         let room = MOST_LEAVES;
-        for (const { object, pieces } of this.#objects) {
-            const view = viewOf(moment, object);
+        for (const [at, { object, pieces }] of this.#objects.entries()) {
             for (const piece of pieces) {
-                piece.update(view, this.#modelOf(object), coarse, room);
+                piece.update(views[at], this.#modelOf(object), coarse, room);
                 room -= piece.leafCount;
             }
         }
-        this.#coarseness =
-            room <= 0 ? Math.min(this.#coarseness * 2, COARSEST) : Math.max(this.#coarseness * RECOVERY, 1);
-        this.spent = performance.now() - start;
+        return room > 0;
     }
 
     /**

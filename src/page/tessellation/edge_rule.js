@@ -13,6 +13,7 @@
  * @property {number} outside The angle in radians that may be off in the view from outside; infinite where it is not drawn.
  * @property {import("../spacetime/vector.js").Vec3} camera The place of that view's camera, in the axes of the sight.
  * @property {number} nearest No place nearer than this is seen more sharply, in units of the scene.
+ * @property {number} [shortest] No edge shorter than this is halved before it is a leaf's, in units of the scene.
  */
 
 /** Halvings that the pattern of a leaf has room for; an edge that needs more is halved first. */
@@ -42,9 +43,9 @@ export function halvings(sight, sharpness, points, a, b) {
     const middle = Math.sqrt(Math.max(ra * ra + rb * rb + 2 * dot, 0));
     const gap = (sight.bend * Math.max(ra * rb - dot, 0)) / (ra + rb + middle);
     if (dot < WIDEST * ra * rb && gap > sharpness.observer * sharpness.nearest) {
-        return LEAF_HALVINGS + 1;
+        return unlessShort(LEAF_HALVINGS + 1, sharpness, points, a, b);
     }
-    return halvingsFor(tooFar(sharpness, points, a, b, gap, sight.motion));
+    return unlessShort(halvingsFor(tooFar(sharpness, points, a, b, gap, sight.motion)), sharpness, points, a, b);
 }
 
 /** The direction in which an edge of a round shape is off. */
@@ -82,7 +83,26 @@ export function roundHalvings(sight, sharpness, points, a, b, sag, s) {
     TOWARD[0] = offX * unit;
     TOWARD[1] = offY * unit;
     TOWARD[2] = offZ * unit;
-    return halvingsFor(tooFar(sharpness, points, a, b, gap, TOWARD));
+    return unlessShort(halvingsFor(tooFar(sharpness, points, a, b, gap, TOWARD)), sharpness, points, a, b);
+}
+
+/**
+ * An edge too short to be halved further stays that of a leaf: a limit of the edge alone, on which both of its sides agree.
+ * @param {number} halvings
+ * @param {Sharpness} sharpness
+ * @param {Float64Array} points
+ * @param {number} a
+ * @param {number} b
+ */
+function unlessShort(halvings, sharpness, points, a, b) {
+    if (halvings <= LEAF_HALVINGS) {
+        return halvings;
+    }
+    const x = points[a] - points[b];
+    const y = points[a + 1] - points[b + 1];
+    const z = points[a + 2] - points[b + 2];
+    const shortest = sharpness.shortest ?? 0;
+    return x * x + y * y + z * z < shortest * shortest ? LEAF_HALVINGS : halvings;
 }
 
 /** @param {number} ratio How many times as far off as it may be. */

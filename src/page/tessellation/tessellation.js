@@ -22,8 +22,11 @@ const WEIGHTS = PLACE + 3;
 const OWN = WEIGHTS + 2;
 const POOL_NUMBERS = OWN + 4;
 
-/** Halvings after which weights would no longer be exact in `f32`. */
-const DEEPEST = 20;
+/** An edge of this part of the longest edge of the mesh is not halved further: weights are exact in `f32` until then. */
+const SHORTEST = 2 ** -16;
+
+/** Parts of parts, at most: more than edges of that length need. */
+const DEEPEST = 40;
 
 /** A range of numbers that changed: the first, and how many. */
 /** @typedef {[number, number]} Range */
@@ -50,6 +53,8 @@ export class Tessellation {
     /** Of round shapes, how far the middles of the edges of each triangle are off the surface at rest: three vectors. */
     #sags;
     #sag = new Float64Array(3);
+    /** The length of the longest edge. */
+    #longest = 0;
     #sorted = new Uint32Array(3);
     #room = 0;
     /** @type {Sight} */
@@ -70,6 +75,9 @@ export class Tessellation {
         this.#round = round;
         this.#points = new Float64Array(vertices * POINT_NUMBERS);
         this.#stamps = new Uint32Array(vertices);
+        for (let at = CLUSTER_NUMBERS - 1; at < clusters.bounds.length; at += CLUSTER_NUMBERS) {
+            this.#longest = Math.max(this.#longest, Math.sqrt(clusters.bounds[at]));
+        }
         this.#inPieces = new Uint8Array(clusters.starts.length - 1);
         this.#places = new Float64Array(round ? vertices * 4 : 0);
         if (round) {
@@ -95,7 +103,7 @@ export class Tessellation {
      */
     update(sight, sharpness, room) {
         this.#sight = sight;
-        this.#sharpness = sharpness;
+        this.#sharpness = { ...sharpness, shortest: this.#longest * SHORTEST };
         this.#stamp += 1;
         this.#room = room;
         this.changed.length = 0;
