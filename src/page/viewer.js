@@ -146,7 +146,10 @@ export class Viewer {
             this.#isFramed = false;
             this.#makeStale();
         });
-        new ResizeObserver(() => this.#makeStale()).observe(page.canvas);
+        new ResizeObserver(() => {
+            this.#layout.resized();
+            this.#makeStale();
+        }).observe(page.canvas);
     }
 
     /** What the observer is now. */

@@ -9,7 +9,6 @@ import { rotate } from "../spacetime/quaternion.js";
  * @typedef {object} Round
  * @property {"ROUND_SPHERE" | "ROUND_TORUS" | "ROUND_LATHE"} kind
  * @property {number[]} radii The radius of a sphere; the major and the minor radius of a torus.
- * @property {number} curvature The largest curvature of the surface at rest, per unit of length.
  * @property {Vec3} origin The origin of the shape in the coordinates of the mesh.
  * @property {number[]} fromShape The matrix from the shape's coordinates to those of the mesh, row by row.
  * @property {number[]} toShape The matrix back.
@@ -30,10 +29,9 @@ export function roundOf(shape, object, origin) {
         fromShape: [0, 1, 2].flatMap((row) => columns.map((column) => column[row])),
         toShape: rows.flat(),
     };
-    const largest = Math.max(...scale.map(Math.abs)) / Math.min(...scale.map(Math.abs)) ** 2;
     if ("sphere" in shape) {
         const { radius } = shape.sphere;
-        return { ...common, kind: "ROUND_SPHERE", radii: [radius, 0], curvature: largest / radius };
+        return { ...common, kind: "ROUND_SPHERE", radii: [radius, 0] };
     }
     if ("torus" in shape) {
         const { major_radius: major, minor_radius: minor } = shape.torus;
@@ -41,11 +39,9 @@ export function roundOf(shape, object, origin) {
             ...common,
             kind: "ROUND_TORUS",
             radii: [major, minor],
-            curvature: largest * Math.max(1 / minor, 1 / (major - minor)),
         };
     }
-    const { radius } = Object.values(shape)[0];
-    return { ...common, kind: "ROUND_LATHE", radii: [0, 0], curvature: largest / radius };
+    return { ...common, kind: "ROUND_LATHE", radii: [0, 0] };
 }
 
 /**

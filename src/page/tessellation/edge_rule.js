@@ -105,16 +105,16 @@ function unlessShort(halvings, sharpness, points, a, b) {
     return x * x + y * y + z * z < shortest * shortest ? LEAF_HALVINGS : halvings;
 }
 
-/** @param {number} ratio How many times as far off as it may be. */
-function halvingsFor(ratio) {
-    if (!(ratio > 1)) {
+/** @param {number} ratio2 The square of how many times as far off as it may be it is: a quarter as far for each halving. */
+function halvingsFor(ratio2) {
+    if (!(ratio2 > 1)) {
         return 0;
     }
-    return ratio > 16 ? 3 : ratio > 4 ? 2 : 1;
+    return ratio2 > 256 ? 3 : ratio2 > 16 ? 2 : 1;
 }
 
 /**
- * How many times as far off as it may be the middle of an edge is, if it is off by `gap` in the unit direction `toward`.
+ * How many times as far off as it may be the middle of an edge is, squared, if it is off by `gap` in the unit direction `toward`.
  * @param {Sharpness} sharpness
  * @param {Float64Array} points
  * @param {number} a
@@ -126,12 +126,12 @@ function tooFar(sharpness, points, a, b, gap, toward) {
     const x = (points[a + 4] + points[b + 4]) / 2;
     const y = (points[a + 5] + points[b + 5]) / 2;
     const z = (points[a + 6] + points[b + 6]) / 2;
-    let ratio = 0;
+    let ratio2 = 0;
     if (sharpness.observer < Infinity) {
         const distance2 = Math.max(x * x + y * y + z * z, sharpness.nearest ** 2);
         const along = x * toward[0] + y * toward[1] + z * toward[2];
         const across2 = Math.max(1 - (along * along) / distance2, LEAST_ACROSS);
-        ratio = (gap / sharpness.observer) * Math.sqrt(across2 / distance2);
+        ratio2 = (gap * gap * across2) / (sharpness.observer * sharpness.observer * distance2);
     }
     if (sharpness.outside < Infinity) {
         const cx = sharpness.camera[0];
@@ -141,7 +141,7 @@ function tooFar(sharpness, points, a, b, gap, toward) {
         const nearA2 = (points[a + 4] - cx) ** 2 + (points[a + 5] - cy) ** 2 + (points[a + 6] - cz) ** 2;
         const nearB2 = (points[b + 4] - cx) ** 2 + (points[b + 5] - cy) ** 2 + (points[b + 6] - cz) ** 2;
         const nearest2 = Math.max(Math.min(distance2, nearA2, nearB2), sharpness.nearest ** 2);
-        ratio = Math.max(ratio, gap / sharpness.outside / Math.sqrt(nearest2));
+        ratio2 = Math.max(ratio2, (gap * gap) / (sharpness.outside * sharpness.outside * nearest2));
     }
-    return ratio;
+    return ratio2;
 }

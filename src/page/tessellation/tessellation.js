@@ -53,6 +53,8 @@ export class Tessellation {
     /** Of round shapes, how far the middles of the edges of each triangle are off the surface at rest: three vectors. */
     #sags;
     #sag = new Float64Array(3);
+    /** The largest length of these vectors in each cluster. */
+    #sagBounds;
     /** The length of the longest edge. */
     #longest = 0;
     #sorted = new Uint32Array(3);
@@ -87,11 +89,22 @@ export class Tessellation {
             }
         }
         this.#sags = new Float64Array(round ? 3 * clusters.index.length : 0);
+        this.#sagBounds = new Float64Array(clusters.starts.length - 1);
         if (round) {
             clusters.index.forEach((vertex, at) => {
                 const next = clusters.index[at % 3 === 2 ? at - 2 : at + 1];
                 sagAt(round, this.#places, 4 * vertex, 4 * next, this.#sags, 3 * at);
             });
+            for (let cluster = 0; cluster < this.#sagBounds.length; cluster += 1) {
+                let largest2 = 0;
+                for (let at = 9 * clusters.starts[cluster]; at < 9 * clusters.starts[cluster + 1]; at += 3) {
+                    largest2 = Math.max(
+                        largest2,
+                        this.#sags[at] ** 2 + this.#sags[at + 1] ** 2 + this.#sags[at + 2] ** 2,
+                    );
+                }
+                this.#sagBounds[cluster] = Math.sqrt(largest2);
+            }
         }
     }
 
@@ -136,18 +149,18 @@ export class Tessellation {
         const r = pool[3];
         const forward =
             r > 0 ? (pool[0] * sight.motion[0] + pool[1] * sight.motion[1] + pool[2] * sight.motion[2]) / r : 0;
-        const curvature = this.#round ? this.#round.curvature : 0;
+        const sag = this.#sagBounds[cluster] * sight.elongation;
         // How far the map reaches: I + n a, with a the slope of the place along the motion.
         const slope = sight.delayed
             ? Math.sqrt((sight.gamma - 1) ** 2 + sight.momentum ** 2 + 2 * (sight.gamma - 1) * sight.momentum * forward)
             : 0;
         const nearest = r - radius;
         let gap = 0;
-        if (sight.bend > 0 || curvature > 0) {
+        if (sight.bend > 0 || sag > 0) {
             if (!(nearest > 0)) {
                 return false;
             }
-            gap = (edge2 / 8) * (sight.bend / nearest + curvature * (1 + slope));
+            gap = ((edge2 / 8) * sight.bend) / nearest + sag * (1 + slope);
         }
         const { observer, outside, camera, nearest: closest } = this.#sharpness;
         if (observer < Infinity) {

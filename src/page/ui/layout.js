@@ -11,6 +11,8 @@ export class Layout {
     #outside;
     /** @type {import("../state.js").State["layout"]} */
     #layout = "both";
+    /** @type {ReturnType<Layout["place"]> | null} */
+    #placed = null;
 
     /**
      * @param {HTMLCanvasElement} canvas
@@ -35,16 +37,27 @@ export class Layout {
 
     /** @param {import("../state.js").State["layout"]} layout */
     show(layout) {
+        this.#placed = null;
         this.#layout = layout;
         this.#observer.hidden = layout === "outside";
         this.#outside.hidden = layout === "observer";
     }
 
     /**
-     * Places the views, and says where they are.
+     * Places the views, if they are not in their places, and says where they are.
      * @returns {{ width: number, height: number, rectangles: import("../views/views.js").Rectangles }}
      */
     place() {
+        this.#placed ??= this.#arranged();
+        return this.#placed;
+    }
+
+    /** The canvas has another size: the views have other places. */
+    resized() {
+        this.#placed = null;
+    }
+
+    #arranged() {
         const { clientWidth: width, clientHeight: height } = this.#canvas;
         const isNarrow = width < NARROW * height;
         const whole = { x: 0, y: 0, width, height };
