@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { momentOf } from "../../src/page/spacetime/moment.js";
 import { inBrowser, openPage, show, writePage } from "./browser.mjs";
+import { readBack } from "./feedback.mjs";
 import { numbers, quaternionFrom, vectorFrom } from "./program.mjs";
 
 /** Half the side of the room, and how far from its middle the observer flies. */
@@ -25,8 +26,9 @@ const FINER = 4;
 const MOST_CHANGED = 3e-3;
 
 /**
- * Pixels of a moment in which background shows, alone or as a line no wider than a pixel: single pixels of long edges, which
- * SwiftShader cuts off at the border of the picture. A hole has neighbours to its right or below too.
+ * Pixels of a moment in which background shows, alone or as a line no wider than a pixel. Vertices that pieces share are at
+ * one place to the last bit, and pieces cover everything (`covering.test.mjs`), so these pixels are the rasterizer's: it cuts
+ * off triangles that reach beyond the picture. A hole has neighbours to its right and below too.
  */
 const MOST_HAIRLINES = 40;
 
@@ -102,6 +104,48 @@ function drawInPage(finer) {
     globalThis.lastPixels = pixels;
     return { holes, hairlines, changed: changed / (width * height) };
 }
+
+/**
+ * Vertices that are at one place at rest and are not drawn at one place, and those that are at nearly one place:
+ * pieces that share a vertex share all its bits, so that no crack opens between them.
+ */
+function parted({ rest, clip }) {
+    const nearby = 2 ** -13;
+    const places = new Map();
+    let count = 0;
+    for (let k = 0; 3 * k < rest.length; k++) {
+        const place = rest.slice(3 * k, 3 * k + 3);
+        const name = String(place.map((part) => Math.round(part / nearby)));
+        const drawn = `${place} ${clip.slice(4 * k, 4 * k + 4)}`;
+        count += (places.get(name) ?? drawn) === drawn ? 0 : 1;
+        places.set(name, drawn);
+    }
+    return count;
+}
+
+test("what pieces share is drawn at one place, to the last bit", async (t) => {
+    await inBrowser(async (browser, folder) => {
+        const { page } = await openPage(browser, writePage(folder, SCENE), { width: 320, height: 240 });
+        let vertices = 0;
+        let number = 0;
+        for (const moment of moments()) {
+            if (number++ % EVERY !== 0) {
+                continue;
+            }
+            await show(page, {}, moment);
+            const { results } = await readBack(page, Number.MAX_SAFE_INTEGER);
+            for (const piece of new Set(results.map((result) => result.piece))) {
+                const parts = results.filter((result) => result.piece === piece);
+                const rest = parts.flatMap((part) => part.rest);
+                const clip = parts.flatMap((part) => part.clip);
+                vertices += rest.length / 3;
+                assert.equal(parted({ rest, clip }), 0, `vertices of ${piece} apart at ${JSON.stringify(moment)}`);
+            }
+        }
+        assert.ok(vertices > 10_000, `${vertices} vertices`);
+        t.diagnostic(`${vertices} vertices`);
+    });
+});
 
 test("a flight through a closed room shows no hole and no facet", async (t) => {
     await inBrowser(async (browser, folder) => {

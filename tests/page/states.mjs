@@ -111,7 +111,8 @@ export const STATES = [
     {
         name: "in a lattice at gamma 20",
         input: LATTICE,
-        observer: observer([0.5, -0.5, 1.5], 20, [0.48, 0.6, -0.64], turn(25, [1, 1, 0])),
+        observer: observer([0.5, 0.4, -3.2], 20, [0.02, 0.01, -1]),
+        state: { fieldOfViewDeg: 8 },
     },
     {
         name: "objects of different velocities",
