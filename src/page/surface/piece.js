@@ -22,6 +22,9 @@ import { vertexTable } from "./vertex_table.js";
 /** The layer of three.js with what only the view from outside shows. Headsets have the layers 1 and 2, one for each eye. */
 export const OUTSIDE_LAYER = 3;
 
+/** More ranges of a buffer than this are uploaded as one. */
+const MOST_RANGES = 256;
+
 /** So many vertices tell where a mesh is seen. */
 const MOST_PLACES = 100;
 
@@ -168,6 +171,10 @@ export class Piece {
         const { changed, leaves } = this.#tessellation;
         const index = /** @type {BufferAttribute} */ (this.#mesh.geometry.index);
         // Ranges of an update that was not drawn are still to be uploaded; three.js clears them then.
+        if (index.updateRanges.length > MOST_RANGES) {
+            index.clearUpdateRanges();
+            index.addUpdateRange(0, index.count);
+        }
         for (const [start, count] of changed) {
             index.addUpdateRange(start, count);
         }
