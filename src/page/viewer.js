@@ -44,15 +44,11 @@ const HEAD_RATE = 1.5;
 const PASSING_ANGLE = 0.8;
 const PASSING_FIELD_DEG = 40;
 
-/** Frames whose times are kept. */
-const FRAMES_KEPT = 600;
-
 export class Viewer {
     store;
     views;
     world;
-    /** Milliseconds that the last frames took outside the graphics processor. */
-    frameTimes = new Float64Array(FRAMES_KEPT);
+    /** How many frames there were. */
     frames = 0;
 
     #data;
@@ -172,7 +168,6 @@ export class Viewer {
      * @param {number} now In milliseconds.
      */
     frame(now) {
-        const begun = performance.now();
         const { state } = this.store;
         const before = this.moment;
         const last = this.#last;
@@ -192,7 +187,6 @@ export class Viewer {
             this.#isStale = false;
             this.drawNow(now);
         }
-        this.frameTimes[this.frames % FRAMES_KEPT] = performance.now() - begun;
         this.frames += 1;
     }
 

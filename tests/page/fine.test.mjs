@@ -23,12 +23,13 @@ const EVERY = 8;
 const FINER = 4;
 
 /** Part of the pixels that finer triangles may change: those at outlines. */
-const MOST_CHANGED = 3e-3;
+const MOST_CHANGED = 2e-3;
 
 /**
- * Pixels of a moment in which background shows, alone or as a line no wider than a pixel. Vertices that pieces share are at
- * one place to the last bit, and pieces cover everything (`covering.test.mjs`), so these pixels are the rasterizer's: it cuts
- * off triangles that reach beyond the picture. A hole has neighbours to its right and below too.
+ * Pixels of all moments together in which background shows, alone or as a line no wider than a pixel: a part of 2.6e-6.
+ * Vertices that pieces share are at one place to the last bit, and pieces cover everything (`covering.test.mjs`), so these
+ * pixels are taken for the rasterizer's, which cuts off triangles that reach beyond the picture; nothing here proves that. A
+ * hole has neighbours to its right and below too.
  */
 const MOST_HAIRLINES = 40;
 
@@ -179,11 +180,8 @@ test("a flight through a closed room shows no hole and no facet", async (t) => {
             await show(page, {}, moment);
             const { holes, hairlines } = await page.evaluate(drawInPage, 1);
             assert.equal(holes, 0, `${holes} pixels of background at ${JSON.stringify(moment)}`);
-            assert.ok(
-                hairlines <= MOST_HAIRLINES,
-                `${hairlines} pixels of some background at ${JSON.stringify(moment)}`,
-            );
             thin += hairlines;
+            assert.ok(thin <= MOST_HAIRLINES, `${thin} pixels of some background up to ${JSON.stringify(moment)}`);
             if (drawn % EVERY === 0) {
                 const { changed } = await page.evaluate(drawInPage, FINER);
                 assert.ok(changed <= MOST_CHANGED, `${changed} of the pixels change at ${JSON.stringify(moment)}`);

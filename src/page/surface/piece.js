@@ -95,10 +95,13 @@ export class Piece {
     }
 
     /**
-     * Compiles the effects that are on and no others.
+     * Compiles the effects that are on and no others, if they are not those that were on.
      * @param {Defines} look
      */
     setLook(look) {
+        if (Object.keys(look).join() === Object.keys(this.#look).join()) {
+            return;
+        }
         this.#look = look;
         for (const mesh of [this.#mesh, ...this.#leaves.map((leaves) => leaves.mesh)]) {
             if (mesh) {

@@ -39,8 +39,6 @@ const RECOVERY = 0.97;
 
 export class World {
     group = new Group();
-    /** Time of the last update in milliseconds. */
-    spent = 0;
     /** Uniforms that all meshes share: what the views and the effects set. */
     shared;
 
@@ -184,14 +182,12 @@ export class World {
      * @param {Sharpness} sharpness
      */
     update(moment, sharpness) {
-        const start = performance.now();
         const views = this.#objects.map(({ object }) => viewOf(moment, object));
         // Where there are too many leaves, all is made coarser at once: triangles that stay coarse alone would leave cracks.
         while (!this.#place(views, sharpness) && this.#coarseness < COARSEST) {
             this.#coarseness *= 2;
         }
         this.#coarseness = Math.max(this.#coarseness * RECOVERY, 1);
-        this.spent = performance.now() - start;
     }
 
     /**
