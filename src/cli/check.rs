@@ -70,8 +70,8 @@ pub(super) fn run(args: &CheckArgs) -> anyhow::Result<Status> {
     for (name, part) in placed.objects().flat_map(|(_, parts)| parts) {
         verbosity.detail(format_args!(
             "{name}: {}, {}",
-            counted(part.mesh().positions().len(), "vertex"),
-            counted(part.mesh().triangles().len(), "triangle")
+            counted(part.mesh().vertex_count(), "vertex"),
+            counted(part.mesh().triangle_count(), "triangle")
         ));
     }
     let fits = format.min_size(&placed, placed.scene().steps().len());

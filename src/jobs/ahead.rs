@@ -28,7 +28,7 @@ pub(super) fn in_order(
     mut put: impl FnMut(Photosurface) -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
     let parts = placed.objects().flat_map(|(_, parts)| parts);
-    let at_rest = parts.map(|(_, part)| part.mesh().triangles().len()).sum();
+    let at_rest = parts.map(|(_, part)| part.mesh().triangle_count()).sum();
     // The number of triangles of a step is unknown until the first step is made.
     let (mut largest, mut ahead) = (at_rest, steps_ahead(at_rest).min(1));
     let mut begun: VecDeque<Receiver<Result<Vec<Photosurface>, PlacedSceneError>>> =

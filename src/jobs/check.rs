@@ -154,7 +154,7 @@ impl CheckedObject {
                     name: object.name.clone(),
                     model: object.view_model(),
                     parts: parts.len(),
-                    vertices: meshes().map(|mesh| mesh.positions().len()).sum(),
+                    vertices: meshes().map(|mesh| mesh.vertex_count()).sum(),
                     relative_gamma: relative.gamma(),
                     relative_rapidity: relative.rapidity(),
                     at_rest: meshes()
@@ -241,8 +241,8 @@ impl CheckedEffect {
         let vertices = placed.objects().zip(&fitted.predictions);
         let vertices = vertices.map(|((_, parts), prediction)| {
             let meshes = || parts.iter().map(|(_, part)| part.mesh());
-            let vertices: usize = meshes().map(|mesh| mesh.positions().len()).sum();
-            let triangles: usize = meshes().map(|mesh| mesh.triangles().len()).sum();
+            let vertices: usize = meshes().map(|mesh| mesh.vertex_count()).sum();
+            let triangles: usize = meshes().map(|mesh| mesh.triangle_count()).sum();
             prediction.triangles * vertices as f64 / triangles.max(1) as f64
         });
         let vertices: f64 = vertices.sum();

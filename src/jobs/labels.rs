@@ -59,7 +59,7 @@ pub(super) fn draw_labels(
         };
         let vertices: usize = parts
             .iter()
-            .map(|(_, part)| part.mesh().positions().len())
+            .map(|(_, part)| part.mesh().vertex_count())
             .sum();
         let every = vertices.div_ceil(MEASURED).max(1);
         let positions = parts.iter().flat_map(|(_, part)| part.mesh().positions());

@@ -121,8 +121,8 @@ impl Model {
             let Some(source) = part.unshaded() else {
                 continue;
             };
-            let vertices = source.positions().len() as u64;
-            let corners = 3 * source.triangles().len() as u64;
+            let vertices = source.vertex_count() as u64;
+            let corners = 3 * source.triangle_count() as u64;
             let sets = source.texture_coordinates().len() as u64;
             let colors = u64::from(source.colors().is_some());
             let of_vertex = 12 + 8 * sets + 4 * colors;

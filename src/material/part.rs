@@ -35,7 +35,7 @@ impl Part {
         mesh: Mesh,
         material: Option<Arc<Material>>,
     ) -> Result<Self, MeshError> {
-        let unshaded = mesh.normals().is_none().then(|| mesh.clone());
+        let unshaded = (!mesh.has_normals()).then(|| mesh.clone());
         let mesh = match &unshaded {
             None => mesh,
             Some(_) => mesh.with_flat_normals()?,
@@ -96,7 +96,7 @@ impl Model {
     pub fn triangle_count(&self) -> usize {
         self.parts
             .iter()
-            .map(|part| part.mesh.triangles().len())
+            .map(|part| part.mesh.triangle_count())
             .sum()
     }
 
@@ -110,9 +110,6 @@ impl Model {
 
     /// How many vertices all parts have together.
     pub fn vertex_count(&self) -> usize {
-        self.parts
-            .iter()
-            .map(|part| part.mesh.positions().len())
-            .sum()
+        self.parts.iter().map(|part| part.mesh.vertex_count()).sum()
     }
 }

@@ -7,20 +7,23 @@ use glam::{DAffine3, DMat3, DVec3, DVec4, Vec2, Vec4};
 use rayon::prelude::*;
 use thiserror::Error;
 
+use super::triangles::Triangles;
+use super::vectors::{Places, Vectors};
+use super::vertices::{Compute, MANY_VERTICES, VERTICES_AT_ONCE, Vertices};
 use crate::spacetime::unit;
 
 /// A triangle mesh: positions, indexed triangles, and attributes of its vertices.
 ///
-/// Positions, normals and tangents are computed with and held in `f64`; texture coordinates and colours
-/// only travel and are held as files have them. Every constructor checks, so that indices are in
+/// Positions, normals and tangents are computed with in `f64`; what a file has in `f32` is held like that until someone asks
+/// for a slice of it, and of a large mesh flat facets and the geometry of a photosurface are held by nobody until then. Texture
+/// coordinates and colours only travel and are held as files have them. Every constructor checks, so that indices are in
 /// range, every number is finite and every attribute has one value a vertex. A clone shares everything
 /// with its original, and a mesh shares with its images what the map leaves as it is: of a
 /// photosurface triangles, texture coordinates and colours.
-#[derive(Clone, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    positions: Arc<Vec<DVec3>>,
-    triangles: Arc<Vec<[u32; 3]>>,
-    normals: Option<Arc<Vec<DVec3>>>,
+    vertices: Vertices,
+    triangles: Arc<Triangles>,
     tangents: Option<Arc<Vec<DVec4>>>,
     texture_coordinates: Vec<Arc<Vec<Vec2>>>,
     colors: Option<Arc<Vec<Vec4>>>,
@@ -80,8 +83,8 @@ impl Mesh {
         check_triangles(&triangles, vertices)?;
         check("POSITION", &positions, vertices, |p| p.is_finite())?;
         Ok(Self {
-            positions: positions.into(),
-            triangles: triangles.into(),
+            vertices: Vertices::held(positions, None),
+            triangles: Arc::new(triangles.into()),
             ..Self::default()
         })
     }
@@ -92,9 +95,11 @@ impl Mesh {
     ///
     /// A wrong count or a value that is not finite.
     pub fn with_normals(mut self, mut normals: Vec<DVec3>) -> Result<Self, MeshError> {
-        check("NORMAL", &normals, self.positions.len(), |n| n.is_finite())?;
+        check("NORMAL", &normals, self.vertex_count(), |n| n.is_finite())?;
         change(&mut normals, unit_or_zero);
-        self.normals = Some(normals.into());
+        let (positions, _) = self.vertices.into_held();
+        let normals = Some(Arc::new(normals.into()));
+        self.vertices = Vertices::Held { positions, normals };
         Ok(self)
     }
 
@@ -104,9 +109,7 @@ impl Mesh {
     ///
     /// A wrong count or a value that is not finite.
     pub fn with_tangents(mut self, mut tangents: Vec<DVec4>) -> Result<Self, MeshError> {
-        check("TANGENT", &tangents, self.positions.len(), |t| {
-            t.is_finite()
-        })?;
+        check("TANGENT", &tangents, self.vertex_count(), |t| t.is_finite())?;
         change(&mut tangents, |t| {
             unit_or_zero(t.truncate()).extend(if t.w < 0.0 { -1.0 } else { 1.0 })
         });
@@ -120,7 +123,7 @@ impl Mesh {
     ///
     /// A wrong count or a value that is not finite.
     pub fn with_texture_coordinates(mut self, coordinates: Vec<Vec2>) -> Result<Self, MeshError> {
-        check("TEXCOORD", &coordinates, self.positions.len(), |c| {
+        check("TEXCOORD", &coordinates, self.vertex_count(), |c| {
             c.is_finite()
         })?;
         self.texture_coordinates.push(coordinates.into());
@@ -133,24 +136,94 @@ impl Mesh {
     ///
     /// A wrong count or a value that is not finite.
     pub fn with_colors(mut self, colors: Vec<Vec4>) -> Result<Self, MeshError> {
-        check("COLOR_0", &colors, self.positions.len(), |c| c.is_finite())?;
+        check("COLOR_0", &colors, self.vertex_count(), |c| c.is_finite())?;
         self.colors = Some(colors.into());
         Ok(self)
     }
 
     /// Places of the vertices.
     pub fn positions(&self) -> &[DVec3] {
-        &self.positions
+        self.vertices.positions()
+    }
+
+    /// How many vertices there are, which takes no room for their places.
+    pub fn vertex_count(&self) -> usize {
+        self.vertices.len()
     }
 
     /// Corners of the triangles, counter-clockwise seen from outside.
     pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.triangles
+        self.triangles.as_slice()
+    }
+
+    /// How many triangles there are, which takes no room for their corners.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
     }
 
     /// Unit normals, or zero where the source has none that means anything.
     pub fn normals(&self) -> Option<&[DVec3]> {
-        self.normals.as_deref().map(Vec::as_slice)
+        self.vertices.normals()
+    }
+
+    /// Whether there are normals, which takes no room for them.
+    pub fn has_normals(&self) -> bool {
+        self.vertices.has_normals()
+    }
+
+    /// Writes the positions of the vertices from number `first` on, and their normals if these are asked for and there are
+    /// any. `first` is a multiple of [`VERTICES_AT_ONCE`].
+    pub(crate) fn read_vertices(
+        &self,
+        first: usize,
+        positions: &mut [DVec3],
+        normals: Option<&mut [DVec3]>,
+    ) {
+        debug_assert!(first.is_multiple_of(VERTICES_AT_ONCE));
+        self.vertices.read(first, positions, normals);
+    }
+
+    /// The places of vertices, and triangles between them: triangle by triangle they have the same corners as the mesh, though
+    /// they may share vertices that it has for each triangle.
+    pub(crate) fn facets(&self) -> (Places<'_>, &[[u32; 3]]) {
+        match self.vertices.facets() {
+            Some((places, triangles)) => (places, triangles.as_slice()),
+            None => (self.vertices.places(), self.triangles()),
+        }
+    }
+
+    /// Something of the position of every vertex.
+    pub(crate) fn of_each_position<T: Copy + Default + Send>(
+        &self,
+        value: impl Fn(DVec3) -> T + Sync,
+    ) -> Vec<T> {
+        let count = self.vertex_count();
+        let jobs = (0..count.div_ceil(VERTICES_AT_ONCE)).into_par_iter();
+        // Arrays have a known place in the result, so that all threads write to it directly.
+        let arrays = jobs.map(|job| {
+            let first = job * VERTICES_AT_ONCE;
+            let mut places = [DVec3::ZERO; VERTICES_AT_ONCE];
+            let mut values = [T::default(); VERTICES_AT_ONCE];
+            let places = &mut places[..VERTICES_AT_ONCE.min(count - first)];
+            self.vertices.read(first, places, None);
+            for (to, &place) in values.iter_mut().zip(&*places) {
+                *to = value(place);
+            }
+            values
+        });
+        let mut values = arrays.collect::<Vec<_>>().into_flattened();
+        values.truncate(count);
+        values
+    }
+
+    /// The places of the vertices, for whoever reads single ones.
+    pub(crate) fn places(&self) -> Places<'_> {
+        self.vertices.places()
+    }
+
+    /// The positions as they are held.
+    pub(super) fn shared_positions(&self) -> Arc<Vectors> {
+        self.vertices.clone().into_held().0
     }
 
     /// Unit tangents with the sign of the bitangent.
@@ -165,11 +238,12 @@ impl Mesh {
 
     /// The positions of the corners of one triangle.
     pub(crate) fn corners_of(&self, triangle: usize) -> [DVec3; 3] {
-        self.triangles[triangle].map(|corner| self.positions[corner as usize])
+        let (places, triangles) = self.facets();
+        triangles[triangle].map(|corner| places.at(corner))
     }
 
     /// The triangles as all meshes share them that differ in geometry alone.
-    pub(crate) fn shared_triangles(&self) -> &Arc<Vec<[u32; 3]>> {
+    pub(crate) fn shared_triangles(&self) -> &Arc<Triangles> {
         &self.triangles
     }
 
@@ -209,12 +283,28 @@ impl Mesh {
     }
 
     fn extent(&self) -> Option<Extent> {
-        *self.extent.0.get_or_init(|| {
-            // The same jobs for any number of threads, for which of 0 and -0 is less depends on their order.
-            let jobs = self.positions.par_chunks(VALUES_PER_JOB).map(Extent::of);
-            let extents: Vec<Extent> = jobs.collect();
-            extents.into_iter().reduce(Extent::with)
-        })
+        if let Some(extent) = self.extent.0.get() {
+            return *extent;
+        }
+        // Not while the lock is held: a thread that waits for others in here may take up work that asks too. The same jobs
+        // for any number of threads, for which of 0 and -0 is less depends on their order.
+        let jobs = (0..self.vertex_count().div_ceil(VALUES_PER_JOB)).into_par_iter();
+        let extents: Vec<Option<Extent>> = jobs.map(|job| self.extent_of_job(job)).collect();
+        let extent = extents.into_iter().flatten().reduce(Extent::with);
+        *self.extent.0.get_or_init(|| extent)
+    }
+
+    fn extent_of_job(&self, job: usize) -> Option<Extent> {
+        let first = job * VALUES_PER_JOB;
+        let end = self.vertex_count().min(first + VALUES_PER_JOB);
+        let mut places = [DVec3::ZERO; VERTICES_AT_ONCE];
+        (first..end)
+            .step_by(VERTICES_AT_ONCE)
+            .fold(None, |extent, first| {
+                let places = &mut places[..VERTICES_AT_ONCE.min(end - first)];
+                self.vertices.read(first, places, None);
+                Extent::around(extent, places)
+            })
     }
 
     /// The mesh without places on textures, and without the tangents that these make.
@@ -237,11 +327,11 @@ impl Mesh {
         }
         self.extent = Remembered::default();
         self.maker = Remembered::default();
-        change_shared(&mut self.positions, |position| {
-            transform.transform_point3(position)
-        });
+        let (mut positions, mut normals) = self.vertices.into_held();
+        positions.placed(transform);
         let linear = transform.matrix3;
         if linear == DMat3::IDENTITY {
+            self.vertices = Vertices::Held { positions, normals };
             return self;
         }
         // The cofactor matrix is the inverse transpose up to a factor, and exists for singular ones too.
@@ -252,8 +342,8 @@ impl Mesh {
         );
         let mirror = linear.determinant() < 0.0;
         let sign = if mirror { -1.0 } else { 1.0 };
-        if let Some(normals) = &mut self.normals {
-            change_shared(normals, |normal| unit_or_zero(cofactor * normal * sign));
+        if let Some(normals) = &mut normals {
+            normals.changed(|normal| unit_or_zero(cofactor * normal * sign));
         }
         if let Some(tangents) = &mut self.tangents {
             change_shared(tangents, |tangent| {
@@ -261,20 +351,25 @@ impl Mesh {
             });
         }
         if mirror {
-            change_shared(&mut self.triangles, |[a, b, c]| [a, c, b]);
+            let turned = |&[a, b, c]: &[u32; 3]| [a, c, b];
+            let jobs = self.triangles.as_slice().par_iter();
+            let jobs = jobs.with_min_len(VALUES_PER_JOB);
+            self.triangles = Arc::new(Triangles::Listed(jobs.map(turned).collect()));
         }
+        self.vertices = Vertices::Held { positions, normals };
         self
     }
 
     /// A mesh of data that is known to fit: indices in range, one value a vertex, all finite.
     pub(crate) fn from_parts(
-        positions: Vec<DVec3>,
+        positions: impl Into<Vectors>,
         triangles: Vec<[u32; 3]>,
-        normals: Option<Vec<DVec3>>,
+        normals: Option<Vectors>,
         tangents: Option<Vec<DVec4>>,
         texture_coordinates: Vec<Vec<Vec2>>,
         colors: Option<Vec<Vec4>>,
     ) -> Self {
+        let positions = positions.into();
         debug_assert!(
             triangles
                 .iter()
@@ -282,9 +377,8 @@ impl Mesh {
                 .all(|&index| (index as usize) < positions.len())
         );
         Self {
-            positions: positions.into(),
-            triangles: triangles.into(),
-            normals: normals.map(Into::into),
+            vertices: Vertices::held(positions, normals),
+            triangles: Arc::new(triangles.into()),
             tangents: tangents.map(Into::into),
             texture_coordinates: texture_coordinates.into_iter().map(Into::into).collect(),
             colors: colors.map(Into::into),
@@ -300,16 +394,56 @@ impl Mesh {
         normals: Option<Vec<DVec3>>,
         tangents: Option<Vec<DVec4>>,
     ) -> Self {
-        debug_assert_eq!(positions.len(), self.positions.len());
+        debug_assert_eq!(positions.len(), self.vertex_count());
+        let vertices = Vertices::held(positions, normals.map(Into::into));
+        self.with_vertices(vertices, tangents, None)
+    }
+
+    /// The image of the mesh, whose vertices `compute` makes, with a normal for each of the mesh. Its positions are within
+    /// `extent`.
+    pub(crate) fn image(
+        &self,
+        compute: Box<Compute>,
+        tangents: Option<Vec<DVec4>>,
+        extent: Option<Extent>,
+    ) -> Self {
+        let vertices = Vertices::image(self.vertex_count(), self.has_normals(), compute);
+        self.with_vertices(vertices, tangents, extent)
+    }
+
+    fn with_vertices(
+        &self,
+        vertices: Vertices,
+        tangents: Option<Vec<DVec4>>,
+        extent: Option<Extent>,
+    ) -> Self {
+        let remembered = extent.map_or_else(OnceLock::new, |extent| OnceLock::from(Some(extent)));
         Self {
-            positions: positions.into(),
+            vertices,
             triangles: self.triangles.clone(),
-            normals: normals.map(Into::into),
             tangents: tangents.map(Into::into),
             texture_coordinates: self.texture_coordinates.clone(),
             colors: self.colors.clone(),
-            extent: Remembered::default(),
+            extent: Remembered(remembered),
             maker: Remembered::default(),
+        }
+    }
+
+    /// The mesh without normals and without the tangents that belong to them.
+    #[must_use]
+    pub fn without_normals(self) -> Self {
+        if !self.has_normals() && self.tangents.is_none() {
+            return self;
+        }
+        let (positions, _) = self.vertices.into_held();
+        Self {
+            vertices: Vertices::Held {
+                positions,
+                normals: None,
+            },
+            tangents: None,
+            maker: Remembered::default(),
+            ..self
         }
     }
 
@@ -320,54 +454,74 @@ impl Mesh {
     ///
     /// More corners than a `u32` index can tell apart.
     pub fn with_flat_normals(self) -> Result<Self, MeshError> {
-        let corners = self.triangles.as_flattened();
-        if corners.len() > u32::MAX as usize {
-            return Err(MeshError::TooManyVertices(corners.len()));
+        let count = self.triangle_count();
+        if 3 * count > u32::MAX as usize {
+            return Err(MeshError::TooManyVertices(3 * count));
         }
-        let jobs = self.triangles.par_iter().with_min_len(VALUES_PER_JOB);
-        let normals = jobs.map(|&[a, b, c]| {
-            let [a, b, c] = [a, b, c].map(|index| self.positions[index as usize]);
-            // A triangle without area has no normal; any unit vector keeps files valid.
-            [unit((b - a).cross(c - a)).unwrap_or(DVec3::Y); 3]
-        });
-        let normals: Vec<[DVec3; 3]> = normals.collect();
-        let new_triangles = (0..corners.len() as u32 / 3).into_par_iter();
+        let list = || self.triangles.as_slice().as_flattened();
+        let (positions, _) = self.vertices.into_held();
+        let vertices = match 3 * count > MANY_VERTICES {
+            true => Vertices::of_facets(positions, self.triangles.clone()),
+            false => {
+                let places = positions.places();
+                let normals = self.triangles.as_slice().iter().flat_map(|corners| {
+                    let corners = corners.map(|corner| places.at(corner));
+                    [flat_normal(corners); 3]
+                });
+                let normals: Vec<DVec3> = normals.collect();
+                Vertices::held(positions.picked(list()), Some(normals.into()))
+            }
+        };
         Ok(Self {
-            normals: Some(normals.into_flattened().into()),
-            positions: pick(&self.positions, corners),
-            triangles: new_triangles
-                .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
-                .collect::<Vec<_>>()
-                .into(),
+            vertices,
+            triangles: Arc::new(Triangles::in_order(count)),
             tangents: self
                 .tangents
                 .as_ref()
-                .map(|tangents| pick(tangents, corners)),
+                .map(|tangents| pick(tangents, list())),
             texture_coordinates: self
                 .texture_coordinates
                 .iter()
-                .map(|set| pick(set, corners))
+                .map(|set| pick(set, list()))
                 .collect(),
-            colors: self.colors.as_ref().map(|colors| pick(colors, corners)),
+            colors: self.colors.as_ref().map(|colors| pick(colors, list())),
             extent: Remembered::default(),
             maker: Remembered::default(),
         })
     }
 }
 
+/// Two meshes are the same if all numbers of both are, wherever these come from.
+impl PartialEq for Mesh {
+    fn eq(&self, other: &Self) -> bool {
+        self.triangles == other.triangles
+            && self.tangents == other.tangents
+            && self.texture_coordinates == other.texture_coordinates
+            && self.colors == other.colors
+            && self.positions() == other.positions()
+            && self.normals() == other.normals()
+    }
+}
+
+/// The normal of a flat triangle. One without area has none; any unit vector keeps files valid.
+pub(super) fn flat_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    unit((b - a).cross(c - a)).unwrap_or(DVec3::Y)
+}
+
 /// Where some positions are.
 #[derive(Clone, Copy, Debug)]
-struct Extent {
+pub(crate) struct Extent {
     low: DVec3,
     high: DVec3,
     is_finite: bool,
 }
 
 impl Extent {
-    fn of(positions: &[DVec3]) -> Self {
-        let first = Self::of_one(positions[0]);
+    /// That of these positions and of those that are `known`.
+    pub(crate) fn around(known: Option<Self>, positions: &[DVec3]) -> Option<Self> {
+        let first = known.or_else(|| positions.first().copied().map(Self::of_one))?;
         let others = positions.iter().copied().map(Self::of_one);
-        others.fold(first, Self::with)
+        Some(others.fold(first, Self::with))
     }
 
     fn of_one(position: DVec3) -> Self {
@@ -378,7 +532,8 @@ impl Extent {
         }
     }
 
-    fn with(self, other: Self) -> Self {
+    /// That of both.
+    pub(crate) fn with(self, other: Self) -> Self {
         Self {
             low: self.low.min(other.low),
             high: self.high.max(other.high),
@@ -387,7 +542,7 @@ impl Extent {
     }
 }
 
-/// Something known of a mesh that is no part of what it is: all are alike.
+/// Something known of a mesh that is no part of what it is.
 #[derive(Clone, Debug)]
 struct Remembered<T>(OnceLock<T>);
 
@@ -397,14 +552,8 @@ impl<T> Default for Remembered<T> {
     }
 }
 
-impl<T> PartialEq for Remembered<T> {
-    fn eq(&self, _other: &Self) -> bool {
-        true
-    }
-}
-
 /// Values a thread takes at a time: enough to outweigh handing them over.
-const VALUES_PER_JOB: usize = 4096;
+pub(crate) const VALUES_PER_JOB: usize = 4096;
 
 fn pick<T: Copy + Send + Sync>(values: &[T], indices: &[u32]) -> Arc<Vec<T>> {
     let jobs = indices.par_iter().with_min_len(VALUES_PER_JOB);
@@ -413,7 +562,7 @@ fn pick<T: Copy + Send + Sync>(values: &[T], indices: &[u32]) -> Arc<Vec<T>> {
 }
 
 /// Makes something else of every value.
-fn change<T: Copy + Send + Sync>(values: &mut [T], new: impl Fn(T) -> T + Sync) {
+pub(super) fn change<T: Copy + Send + Sync>(values: &mut [T], new: impl Fn(T) -> T + Sync) {
     let jobs = values.par_iter_mut().with_min_len(VALUES_PER_JOB);
     jobs.for_each(|value| *value = new(*value));
 }

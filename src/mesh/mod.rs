@@ -3,7 +3,13 @@
 mod edges;
 mod mesh;
 mod smooth;
+mod triangles;
+mod vectors;
+mod vertices;
 mod winding;
 
+pub(crate) use mesh::{Extent, VALUES_PER_JOB, check_triangles, unit_or_zero};
 pub use mesh::{Mesh, MeshError};
-pub(crate) use mesh::{check_triangles, unit_or_zero};
+pub(crate) use triangles::Triangles;
+pub(crate) use vectors::{Places, Vectors};
+pub(crate) use vertices::{MANY_VERTICES, VERTICES_AT_ONCE};

@@ -15,23 +15,6 @@ use crate::spacetime::unit;
 const ROUNDING: f64 = 1e-12;
 
 impl Mesh {
-    /// The mesh without normals and without the tangents that belong to them.
-    #[must_use]
-    pub fn without_normals(self) -> Self {
-        let copy = |set: &std::sync::Arc<Vec<glam::Vec2>>| set.to_vec();
-        match (self.normals(), self.tangents()) {
-            (None, None) => self,
-            _ => Self::from_parts(
-                self.positions().to_vec(),
-                self.triangles().to_vec(),
-                None,
-                None,
-                self.texture_coordinates().iter().map(copy).collect(),
-                self.colors().map(<[_]>::to_vec),
-            ),
-        }
-    }
-
     /// The mesh with smooth normals in place of its own, without tangents. The normal of a vertex is the sum of the normals
     /// of its facets, each times the facet's angle there.
     ///
@@ -103,9 +86,9 @@ impl Mesh {
             firsts
                 .iter()
                 .map(|first| self.positions()[vertex(first)])
-                .collect(),
+                .collect::<Vec<_>>(),
             numbers.as_chunks().0.to_vec(),
-            Some(firsts.iter().map(normal).collect()),
+            Some(firsts.iter().map(normal).collect::<Vec<_>>().into()),
             None,
             sets.collect(),
             colors,

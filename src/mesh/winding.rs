@@ -15,10 +15,10 @@ impl Mesh {
     /// How often the surface goes around a place, in the coordinates of the mesh; the sign says on which side its triangles
     /// are seen. Not a number where the place is not finite.
     pub fn winding_number(&self, place: DVec3) -> f64 {
-        let positions = self.positions();
-        let angles = self.triangles().par_iter().map(|corners| {
+        let (places, triangles) = self.facets();
+        let angles = triangles.par_iter().map(|corners| {
             let [a, b, c] = corners.map(|index| {
-                let offset = positions[index as usize] - place;
+                let offset = places.at(index) - place;
                 // A corner at the place itself takes no part of the sphere.
                 offset.try_normalize().unwrap_or(DVec3::ZERO)
             });

@@ -23,8 +23,8 @@ impl Measured {
         Self {
             gap: found.gap,
             counts: Counts {
-                triangles_in: mesh.triangles().len(),
-                triangles_out: mesh.triangles().len(),
+                triangles_in: mesh.triangle_count(),
+                triangles_out: mesh.triangle_count(),
                 minimum_triangles: found.minimum_triangles,
             },
         }

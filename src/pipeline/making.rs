@@ -83,7 +83,7 @@ pub(super) fn refine_parts(
     limits: &Limits,
     granted: u64,
 ) -> Vec<Refined> {
-    let before: usize = meshes.iter().map(|mesh| mesh.triangles().len()).sum();
+    let before: usize = meshes.iter().map(|mesh| mesh.triangle_count()).sum();
     let more = plan.max_triangles(granted).saturating_sub(before as u64);
     let observer = plan.view().observer_rest();
     refine(meshes, observer, &limits.allowance, &limits.whole, more)
@@ -112,14 +112,14 @@ fn with_refined<'a>(
     refined: Refined,
 ) -> Uncertified<'a> {
     let mesh = part.mesh();
-    let seen = if refined.mesh.positions().len() == mesh.positions().len() {
+    let seen = if refined.mesh.vertex_count() == mesh.vertex_count() {
         seen
     } else {
         MappedMesh::new(plan.view(), &refined.mesh)
     };
     let counts = Counts {
-        triangles_in: mesh.triangles().len(),
-        triangles_out: refined.mesh.triangles().len(),
+        triangles_in: mesh.triangle_count(),
+        triangles_out: refined.mesh.triangle_count(),
         minimum_triangles: refined.minimum_triangles,
     };
     Uncertified {

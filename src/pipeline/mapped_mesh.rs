@@ -4,13 +4,7 @@ use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
 use crate::light_cone::{Batch, Extremes, ModelView, View};
-use crate::mesh::Mesh;
-
-/// Smallest number of vertices that a thread processes at a time: enough to outweigh the cost of handing them over.
-pub(super) const VERTICES_PER_JOB: usize = 4096;
-
-/// Number of vertices in one array of results: few enough for the cache of a core.
-const VERTICES_AT_ONCE: usize = 1024;
+use crate::mesh::{Extent, MANY_VERTICES, Mesh, VALUES_PER_JOB, VERTICES_AT_ONCE};
 
 /// A mesh in the observer's frame, and the extremes of its vertices.
 #[derive(Clone, Debug)]
@@ -20,22 +14,65 @@ pub(super) struct MappedMesh {
 }
 
 impl MappedMesh {
-    /// Maps every vertex of a mesh at rest, with its normal and its tangent.
+    /// Maps every vertex of a mesh at rest, with its normal and its tangent. Of a large mesh only the extremes stay in memory:
+    /// the vertices are mapped again wherever they are wanted.
     pub(super) fn new(view: &View, rest: &Mesh) -> Self {
-        let (positions, normals, extremes) = places(view, rest);
-        let normals = rest.normals().map(|_| normals);
         let tangents = rest.tangents().map(|tangents| {
-            let jobs = rest.positions().par_iter().with_min_len(VERTICES_PER_JOB);
+            let places = rest.places();
+            let jobs = tangents.par_iter().enumerate().with_min_len(VALUES_PER_JOB);
             // The map preserves orientation, so the bitangent keeps its sign.
-            let seen = |(position, tangent): (&_, &DVec4)| {
-                view.seen_tangent(*position, tangent.truncate())
+            let seen = |(vertex, tangent): (usize, &DVec4)| {
+                view.seen_tangent(places.at(vertex as u32), tangent.truncate())
                     .extend(tangent.w)
             };
-            jobs.zip(tangents).map(seen).collect()
+            jobs.map(seen).collect()
         });
+        if rest.vertex_count() > MANY_VERTICES {
+            return Self::computed(*view, rest, tangents);
+        }
+        let (positions, normals, extremes) = places(view, rest);
+        let normals = rest.has_normals().then_some(normals);
         Self {
             mesh: rest.with_geometry(positions, normals, tangents),
             extremes,
+        }
+    }
+
+    fn computed(view: View, rest: &Mesh, tangents: Option<Vec<DVec4>>) -> Self {
+        let vertices = rest.vertex_count();
+        let jobs = (0..vertices.div_ceil(VALUES_PER_JOB)).into_par_iter();
+        let found: Vec<(Extremes, Option<Extent>)> = jobs
+            .map(|job| {
+                let first = job * VALUES_PER_JOB;
+                let end = vertices.min(first + VALUES_PER_JOB);
+                let mut at_rest = [DVec3::ZERO; VERTICES_AT_ONCE];
+                let mut seen = [DVec3::ZERO; VERTICES_AT_ONCE];
+                let nothing = (Extremes::NONE, None);
+                (first..end)
+                    .step_by(VERTICES_AT_ONCE)
+                    .fold(nothing, |(extremes, extent), first| {
+                        let count = VERTICES_AT_ONCE.min(end - first);
+                        let (at_rest, seen) = (&mut at_rest[..count], &mut seen[..count]);
+                        rest.read_vertices(first, at_rest, None);
+                        let found = view.see(Batch {
+                            rest: at_rest,
+                            seen,
+                            normals: None,
+                        });
+                        (extremes.and(found), Extent::around(extent, seen))
+                    })
+            })
+            .collect();
+        let (extremes, extents): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+        let extent = extents.into_iter().flatten().reduce(Extent::with);
+        let at_rest = rest.clone();
+        let compute =
+            move |first: usize, positions: &mut [DVec3], normals: Option<&mut [DVec3]>| {
+                see_piece(&view, &at_rest, first, positions, normals);
+            };
+        Self {
+            mesh: rest.image(Box::new(compute), tangents, extent),
+            extremes: extremes.into_iter().fold(Extremes::NONE, Extremes::and),
         }
     }
 
@@ -48,16 +85,49 @@ impl MappedMesh {
     }
 }
 
+/// Maps the vertices from number `first` on, and their normals where these are asked for.
+fn see_piece(
+    view: &View,
+    rest: &Mesh,
+    first: usize,
+    positions: &mut [DVec3],
+    normals: Option<&mut [DVec3]>,
+) {
+    let mut places = [DVec3::ZERO; VERTICES_AT_ONCE];
+    let firsts = (first..).step_by(VERTICES_AT_ONCE);
+    let pieces = firsts.zip(positions.chunks_mut(VERTICES_AT_ONCE));
+    let Some(normals) = normals else {
+        for (first, seen) in pieces {
+            let places = &mut places[..seen.len()];
+            rest.read_vertices(first, places, None);
+            view.seen_positions(places, seen);
+        }
+        return;
+    };
+    let mut directions = [DVec3::ZERO; VERTICES_AT_ONCE];
+    for ((first, seen), seen_normals) in pieces.zip(normals.chunks_mut(VERTICES_AT_ONCE)) {
+        let places = &mut places[..seen.len()];
+        let directions = &mut directions[..seen.len()];
+        rest.read_vertices(first, places, Some(&mut *directions));
+        view.see(Batch {
+            rest: places,
+            seen,
+            normals: Some((directions, seen_normals)),
+        });
+    }
+}
+
 /// The positions and normals of the vertices in the observer's frame, and their extremes. The normals have no meaning
 /// if the mesh at rest has none.
 fn places(view: &View, rest: &Mesh) -> (Vec<DVec3>, Vec<DVec3>, Extremes) {
-    let vertices = rest.positions().len();
+    let vertices = rest.vertex_count();
+    let (places, directions) = (rest.positions(), rest.normals());
     let see = |first: usize, positions: &mut [DVec3], normals: &mut [DVec3]| {
         let part = first..first + positions.len();
         view.see(Batch {
-            rest: &rest.positions()[part.clone()],
+            rest: &places[part.clone()],
             seen: positions,
-            normals: rest.normals().map(|rest| (&rest[part], normals)),
+            normals: directions.map(|rest| (&rest[part], normals)),
         })
     };
     if vertices <= VERTICES_AT_ONCE {

@@ -105,16 +105,16 @@ impl PlacedObject {
     /// A sample of about `most` triangles, and for each part how many triangles each sampled one stands for. `None` if
     /// the object has no more than `most` triangles or has a shape.
     pub(super) fn sketch(&self, most: usize) -> Option<(Self, Vec<f64>)> {
-        let count = |part: &Part| part.mesh().triangles().len();
+        let count = |part: &Part| part.mesh().triangle_count();
         let all: usize = self.parts.iter().map(|(_, part)| count(part)).sum();
         if all <= most || self.shaped.is_some() {
             return None;
         }
         let share = most as f64 / all as f64;
         let parts = self.parts.iter().map(|(name, part)| {
-            let triangles = part.mesh().triangles();
-            let sampled = (triangles.len() as f64 * share).ceil() as usize;
-            let weight = triangles.len() as f64 / sampled as f64;
+            let triangles = count(part);
+            let sampled = (triangles as f64 * share).ceil() as usize;
+            let weight = triangles as f64 / sampled as f64;
             (
                 (name.clone(), part.with_mesh(sample(part.mesh(), sampled))),
                 weight,
@@ -200,7 +200,7 @@ pub(super) fn stretched(
 }
 
 pub(super) fn triangle_count(parts: &[(String, Part)]) -> u64 {
-    let triangles = parts.iter().map(|(_, part)| part.mesh().triangles().len());
+    let triangles = parts.iter().map(|(_, part)| part.mesh().triangle_count());
     triangles.sum::<usize>() as u64
 }
 
@@ -216,11 +216,9 @@ pub(super) fn spread(all: usize, count: usize) -> impl IndexedParallelIterator<I
 
 /// A sample of `triangles` triangles of a mesh.
 fn sample(mesh: &Mesh, triangles: usize) -> Mesh {
-    let all = mesh.triangles();
+    let (places, all) = mesh.facets();
     let corners = spread(all.len(), triangles).flat_map_iter(|index| all[index]);
-    let positions: Vec<_> = corners
-        .map(|corner| mesh.positions()[corner as usize])
-        .collect();
+    let positions: Vec<_> = corners.map(|corner| places.at(corner)).collect();
     let indices = (0..positions.len() as u32).step_by(3);
     let sampled = Mesh::new(
         positions,

@@ -42,7 +42,7 @@ type Facet = (f64, [DVec3; 3]);
 pub(super) fn predict(mut plan: Plan<'_>, wanted: SurfaceOptions, weights: &[f64]) -> Predicted {
     let facets = plan.shape.as_ref().map_or(0, Shape::triangle_count);
     let (draft, each) = if facets > MAX_FACETS_MADE {
-        let as_placed = plan.placed_object.parts[0].1.mesh().triangles().len();
+        let as_placed = plan.placed_object.parts[0].1.mesh().triangle_count();
         let each = facets as f64 / as_placed as f64;
         (plan.draft_as_placed(each), each)
     } else {
@@ -79,8 +79,9 @@ fn facets_of(draft: &Draft<'_>, observer: DVec3, weights: &[f64], each: f64) -> 
     let parts = draft.parts.iter().zip(weights);
     let facets = parts.flat_map(|((_, part), weight)| {
         let mesh = part.mesh();
-        mesh.triangles().iter().map(move |corners| {
-            let positions = corners.map(|corner| mesh.positions()[corner as usize]);
+        let (places, triangles) = mesh.facets();
+        triangles.iter().map(move |corners| {
+            let positions = corners.map(|corner| places.at(corner));
             let offsets = shrunk(positions, each).map(|position| position - observer);
             (weight * each, offsets)
         })

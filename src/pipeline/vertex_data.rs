@@ -3,9 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
-use super::mapped_mesh::VERTICES_PER_JOB;
 use crate::light_cone::ModelView;
 use crate::mesh::Mesh;
 use crate::scene::{Attribute, Attributes};
@@ -27,11 +25,7 @@ impl VertexData {
     /// The attributes of the vertices of a mesh that stands for an object at rest.
     pub(super) fn new(shown: &ModelView, stand_in: &Mesh, wanted: Attributes) -> Self {
         let numbers = |value: &(dyn Fn(DVec3) -> f64 + Sync)| {
-            let jobs = stand_in
-                .positions()
-                .par_iter()
-                .with_min_len(VERTICES_PER_JOB);
-            VertexValues::Numbers(jobs.map(|&position| value(position)).collect())
+            VertexValues::Numbers(stand_in.of_each_position(value))
         };
         let values = |attribute| match attribute {
             Attribute::Doppler => numbers(&|position| shown.stand_in_doppler_factor(position)),
@@ -99,12 +93,9 @@ impl VertexData {
 
 /// The positions at rest of the vertices of a stand-in.
 fn rest_positions(shown: &ModelView, stand_in: &Mesh) -> Vec<DVec3> {
-    let positions = stand_in.positions();
     match shown.stand_in_to_rest() {
-        None => positions.to_vec(),
-        Some(to_rest) => (positions.iter())
-            .map(|&position| to_rest.transform_point3(position))
-            .collect(),
+        None => stand_in.of_each_position(|position| position),
+        Some(to_rest) => stand_in.of_each_position(|position| to_rest.transform_point3(position)),
     }
 }
 

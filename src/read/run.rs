@@ -58,18 +58,73 @@ impl Run<'_> {
         failure.into_inner().map_or(Ok(values), Err)
     }
 
+    /// What `make` makes of each element, which is so many words, and whether `is_sound` holds for all of them.
+    pub(super) fn words<T, const WORDS: usize>(
+        &self,
+        make: impl Fn([u8; 4]) -> T + Sync,
+        is_sound: impl Fn([T; WORDS]) -> bool + Sync,
+    ) -> Result<(Vec<[T; WORDS]>, bool), ReadError>
+    where
+        T: Copy + Default + Send,
+    {
+        debug_assert_eq!(self.size, 4 * WORDS);
+        let put = |value: &mut [T; WORDS], words: &[[u8; 4]; WORDS]| {
+            *value = words.map(&make);
+            is_sound(*value)
+        };
+        let fill = |values: &mut [[T; WORDS]], job: usize, buffer: &mut Vec<u8>| {
+            if self.count == 0 {
+                return Ok(true);
+            }
+            let mut are_sound = true;
+            if self.stride == self.size {
+                let (words, _) = self.bytes_of(job * JOB, buffer)?.as_chunks();
+                let (elements, _) = words.as_chunks();
+                for (value, words) in values.iter_mut().zip(elements) {
+                    are_sound &= put(value, words);
+                }
+                return Ok(are_sound);
+            }
+            for (value, bytes) in values.iter_mut().zip(self.elements(job * JOB, buffer)?) {
+                let (words, _) = bytes.as_chunks();
+                let (elements, _) = words.as_chunks();
+                are_sound &= put(value, &elements[0]);
+            }
+            Ok(are_sound)
+        };
+        // Zeros come with the memory of them, which then is filled where it is.
+        let mut values = vec![[T::default(); WORDS]; self.count];
+        if self.count <= JOB {
+            let are_sound = fill(&mut values, 0, &mut vec![])?;
+            return Ok((values, are_sound));
+        }
+        let jobs = values.par_chunks_mut(JOB).enumerate();
+        let filled = jobs.map_init(Vec::new, |buffer, (job, values)| fill(values, job, buffer));
+        // Of several errors any will do.
+        let are_sound = filled.try_reduce(|| true, |one, other| Ok(one & other))?;
+        Ok((values, are_sound))
+    }
+
     /// The bytes of the elements of a job that starts with the element `first`.
     fn elements<'b>(
         &'b self,
         first: usize,
         buffer: &'b mut Vec<u8>,
     ) -> Result<impl Iterator<Item = &'b [u8]>, ReadError> {
+        let elements = self.bytes_of(first, buffer)?.chunks(self.stride);
+        Ok(elements.map(|element| &element[..self.size]))
+    }
+
+    /// The bytes from the first to the last of these elements.
+    fn bytes_of<'b>(
+        &'b self,
+        first: usize,
+        buffer: &'b mut Vec<u8>,
+    ) -> Result<&'b [u8], ReadError> {
         let count = JOB.min(self.count - first);
         let start = self.start + first * self.stride;
         let end = start + (count - 1) * self.stride + self.size;
-        let bytes = self.bytes.part(start..end, buffer)?;
-        let elements = bytes.chunks(self.stride);
-        Ok(elements.map(|element| &element[..self.size]))
+        self.bytes.part(start..end, buffer)
     }
 }
 

@@ -88,7 +88,7 @@ pub(super) fn uniform_cost(
 }
 
 fn triangles(mesh: &Mesh, levels: u32) -> f64 {
-    mesh.triangles().len() as f64 * 4f64.powi(levels as i32)
+    mesh.triangle_count() as f64 * 4f64.powi(levels as i32)
 }
 
 /// How often all triangles of a mesh have to be divided, so that every piece is within what is allowed.

@@ -141,8 +141,9 @@ impl Certificate {
     ) -> Self {
         let velocity = view.relative_velocity();
         let (gamma, gamma_beta) = (velocity.gamma(), velocity.gamma_beta());
-        let sines = rest.triangles().par_iter().map(|corners| {
-            let positions = corners.map(|corner| rest.positions()[corner as usize]);
+        let (places, triangles) = rest.facets();
+        let sines = triangles.par_iter().map(|corners| {
+            let positions = corners.map(|corner| places.at(corner));
             let [a, b, c] = positions.map(|position| position - view.observer_rest());
             let e = triangle_gap(a, b, c);
             let gap = gamma_beta * e * UP;

@@ -86,6 +86,12 @@ pub(super) fn divided_edges(
     allowance: &Allowance,
     more: &Count,
 ) -> Option<Edges> {
+    if looked_at.is_empty() {
+        return Some(Edges {
+            divisions: HashMap::new(),
+            origins: vec![],
+        });
+    }
     let positions = mesh.positions();
     let needs_division = |[a, b]: [u32; 2]| {
         let offset = |vertex: u32| positions[vertex as usize] - observer;

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::ceiling::{Ceilings, ceilings};
 use super::minimum::AREA_OF_GAP;
 use super::{Allowance, minimum_triangles, triangle_gap};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Places};
 
 /// Number of triangles that a thread processes at a time. It is constant, so that sums do not depend on the number of
 /// threads.
@@ -46,13 +46,13 @@ pub(crate) fn survey(mesh: &Mesh, observer: DVec3, limit: f64, allowance: &Allow
     };
     // The bits of non-negative floats, read as integers, have the order of the floats.
     let largest = AtomicU64::new(0);
-    let jobs = mesh.triangles().par_chunks(TRIANGLES_PER_JOB).enumerate();
+    let (places, triangles) = mesh.facets();
+    let jobs = triangles.par_chunks(TRIANGLES_PER_JOB).enumerate();
     let found = jobs.map(|(job, triangles)| {
         let mut above = vec![];
         let mut sum = 0.0;
         let mut index = (job * TRIANGLES_PER_JOB) as u32;
-        let positions = mesh.positions();
-        glance(positions, triangles, observer, |ceilings, corners| {
+        glance(places, triangles, observer, |ceilings, corners| {
             sum += if ceilings.area < enough {
                 1.0
             } else {
@@ -87,7 +87,7 @@ pub(crate) fn largest_gap(mesh: &Mesh, observer: DVec3) -> f64 {
 /// Calls `tell` for each triangle in its order, with its cheap bounds and a function that returns the offsets of its
 /// corners from the observer.
 fn glance(
-    positions: &[DVec3],
+    places: Places<'_>,
     triangles: &[[u32; 3]],
     observer: DVec3,
     mut tell: impl FnMut(Ceilings, &dyn Fn() -> [DVec3; 3]),
@@ -96,21 +96,21 @@ fn glance(
     let mut known = [Ceilings::UNKNOWN; BLOCK];
     for triangles in triangles.chunks(BLOCK) {
         arch.dispatch(Block {
-            positions,
+            places,
             triangles,
             observer,
             known: &mut known,
         });
         for (corners, &ceilings) in triangles.iter().zip(&known) {
             tell(ceilings, &|| {
-                corners.map(|corner| positions[corner as usize] - observer)
+                corners.map(|corner| places.at(corner) - observer)
             });
         }
     }
 }
 
 struct Block<'a> {
-    positions: &'a [DVec3],
+    places: Places<'a>,
     triangles: &'a [[u32; 3]],
     observer: DVec3,
     known: &'a mut [Ceilings; BLOCK],
@@ -125,7 +125,7 @@ impl NullaryFnOnce for Block<'_> {
         let mut offsets = [[[0.0; BLOCK]; 3]; 3];
         for (index, corners) in self.triangles.iter().enumerate().take(BLOCK) {
             for (offsets, &corner) in offsets.iter_mut().zip(corners) {
-                let offset = self.positions[corner as usize] - self.observer;
+                let offset = self.places.at(corner) - self.observer;
                 offsets[0][index] = offset.x;
                 offsets[1][index] = offset.y;
                 offsets[2][index] = offset.z;

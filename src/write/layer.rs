@@ -153,27 +153,27 @@ impl<'a> Layer<'a> {
 
     /// The values of an attribute, one for each vertex.
     fn values(&self, attribute: Attribute) -> Result<Values<'a>, WriteError> {
-        let positions = self.mesh.positions();
         let Some(data) = self.vertex_data else {
-            return Ok(Values::AtRest(positions));
+            return Ok(Values::AtRest(self.mesh.positions()));
         };
+        let vertices = self.mesh.vertex_count();
         let columns = attribute.columns();
         let values = data.values(attribute);
         let found = values.map_or(0, |values| values.count(columns.len()));
-        match values.filter(|_| found == positions.len()) {
+        match values.filter(|_| found == vertices) {
             Some(values) => Ok(Values::Known(values)),
             None => Err(WriteError::Attribute {
                 name: self.name.to_owned(),
                 attribute: columns[0],
                 found,
-                vertices: positions.len(),
+                vertices,
             }),
         }
     }
 
     /// Whether a file can hold the numbers.
     fn check(&self, scalar: &Scalar<'_>, numbers: Numbers) -> Result<(), WriteError> {
-        let vertices = self.mesh.positions().len();
+        let vertices = self.mesh.vertex_count();
         let Some(vertex) = first_beyond_f32(vertices, |vertex| scalar.at(vertex)) else {
             return Ok(());
         };

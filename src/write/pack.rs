@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::WriteError;
+use crate::mesh::Mesh;
 
 /// Numbers that a thread looks through at a time. Ten times fewer cost more to hand out than to look through; what is
 /// shorter is looked through at once.
@@ -36,7 +37,7 @@ impl Packing {
     /// No positions, or a number that `f32` cannot hold: too large, or an extent so small that it vanishes.
     pub(super) fn new(
         name: &str,
-        steps: &[&[DVec3]],
+        steps: &[&Mesh],
         around: Option<(DVec3, DVec3)>,
     ) -> Result<Self, WriteError> {
         let bounds = steps.iter().map(|step| checked_bounds(name, step));
@@ -119,37 +120,16 @@ impl<const N: usize> Bounds<N> {
     }
 }
 
-/// The bounds of positions and whether all of them are within `f32`, `None` of none.
-pub(super) fn bounds(positions: &[DVec3]) -> Option<(DVec3, DVec3, bool)> {
-    if positions.is_empty() {
-        return None;
-    }
-    let of_job = |job: &[DVec3]| {
-        let start = (job[0], job[0], true);
-        job.iter().fold(start, |(low, high, fits), &position| {
-            let (low, high) = (low.min(position), high.max(position));
-            (low, high, fits & fits_f32(position))
-        })
-    };
-    if positions.len() <= PER_JOB {
-        return Some(of_job(positions));
-    }
-    // In the order of the vertices, whatever the threads.
-    let jobs = positions.par_chunks(PER_JOB).map(of_job);
-    jobs.reduce_with(|(low, high, fits), (other_low, other_high, other_fits)| {
-        (low.min(other_low), high.max(other_high), fits & other_fits)
-    })
-}
-
-/// The bounds of positions; refuses none, and those that are not numbers or beyond `f32`.
-fn checked_bounds(name: &str, positions: &[DVec3]) -> Result<(DVec3, DVec3), WriteError> {
+/// The bounds of the positions of a mesh; refuses none, and those that are not numbers or beyond `f32`.
+fn checked_bounds(name: &str, mesh: &Mesh) -> Result<(DVec3, DVec3), WriteError> {
     let name = name.to_owned();
-    let Some((low, high, fits)) = bounds(positions) else {
+    let Some((low, high)) = mesh.bounds() else {
         return Err(WriteError::Empty(name));
     };
-    if fits {
+    if mesh.is_finite() && fits_f32(low) && fits_f32(high) {
         return Ok((low, high));
     }
+    let positions = mesh.positions();
     let outside = |position: &DVec3| !fits_f32(*position);
     let vertex = positions.iter().position(outside);
     let vertex = vertex.expect("one of them does not fit");
@@ -201,6 +181,11 @@ fn rounded_to_eighths(middle: DVec3, half_extent: f64) -> DVec3 {
 mod tests {
     use super::*;
 
+    fn points(positions: &[DVec3]) -> Mesh {
+        // Of numbers that files cannot hold, too.
+        Mesh::from_parts(positions.to_vec(), vec![], None, None, vec![], None)
+    }
+
     #[test]
     fn far_away_details_survive() {
         let corner = DVec3::new(1e9 + 0.25, -3e8, 7.0);
@@ -209,7 +194,7 @@ mod tests {
             corner + DVec3::new(1e-3, 2e-3, 0.0),
             corner + DVec3::new(0.0, 0.0, 3e-3),
         ];
-        let packing = Packing::new("far", &[&positions], None).unwrap();
+        let packing = Packing::new("far", &[&points(&positions)], None).unwrap();
         for position in &positions {
             let local = packing.local(*position);
             let back = packing.offset + DVec3::from(local.map(f64::from));
@@ -223,7 +208,8 @@ mod tests {
     fn the_offset_is_exact_in_f32_within_a_million_extents() {
         for distance in [0.0, 1.0, 123.456, 5e5] {
             let middle = DVec3::new(distance, -distance / 3.0, 0.1);
-            let packing = Packing::new("near", &[&[middle - 0.7, middle + 0.7]], None).unwrap();
+            let packing =
+                Packing::new("near", &[&points(&[middle - 0.7, middle + 0.7])], None).unwrap();
             let offset = packing.offset;
             assert_eq!(offset.as_vec3().as_dvec3(), offset, "{distance}");
             let max = packing.local_bounds().max.map(f64::from);
@@ -241,8 +227,9 @@ mod tests {
                     .collect()
             })
             .collect();
-        let slices: Vec<&[DVec3]> = steps.iter().map(Vec::as_slice).collect();
-        let packing = Packing::new("moving", &slices, None).unwrap();
+        let meshes: Vec<Mesh> = steps.iter().map(|step| points(step)).collect();
+        let meshes: Vec<&Mesh> = meshes.iter().collect();
+        let packing = Packing::new("moving", &meshes, None).unwrap();
         // Half of what it moves and is wide, and an eighth of that.
         let reach = 0.5 * 1.125 * 4e3 + 1.0;
         for positions in &steps[1..] {
@@ -264,7 +251,7 @@ mod tests {
                 DVec3::new(turn.sin(), 1e-3 * turn.cos(), -0.0) + DVec3::new(1e5, 7.0, 0.0)
             };
             let positions: Vec<DVec3> = (0..count).map(place).collect();
-            let packing = Packing::new("a", &[&positions], None).unwrap();
+            let packing = Packing::new("a", &[&points(&positions)], None).unwrap();
             let locals: Vec<[f32; 3]> = positions.iter().map(|&p| packing.local(p)).collect();
             let bounds = packing.local_bounds();
             let all = Bounds::of_all(count, |index| locals[index]);
@@ -283,8 +270,12 @@ mod tests {
 
     #[test]
     fn what_f32_cannot_hold_is_refused() {
-        let huge =
-            Packing::new("a", &[&[DVec3::ZERO, DVec3::new(0.0, 1e39, 0.0)]], None).unwrap_err();
+        let huge = Packing::new(
+            "a",
+            &[&points(&[DVec3::ZERO, DVec3::new(0.0, 1e39, 0.0)])],
+            None,
+        )
+        .unwrap_err();
         assert!(
             huge.to_string()
                 .contains("vertex 1 of the photosurface \"a\" is 1e39"),
@@ -293,13 +284,13 @@ mod tests {
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
             // One coordinate that is not a number, the others 0.
             let place = DVec3::select(axis.cmpgt(DVec3::ZERO), DVec3::NAN, DVec3::ZERO);
-            let message = Packing::new("a", &[&[DVec3::ZERO, place]], None).unwrap_err();
+            let message = Packing::new("a", &[&points(&[DVec3::ZERO, place])], None).unwrap_err();
             assert!(message.to_string().contains("vertex 1"), "{message}");
         }
-        assert!(Packing::new("a", &[&[DVec3::ZERO, DVec3::splat(1e-40)]], None).is_err());
-        assert!(Packing::new("a", &[&[]], None).is_err());
+        assert!(Packing::new("a", &[&points(&[DVec3::ZERO, DVec3::splat(1e-40)])], None).is_err());
+        assert!(Packing::new("a", &[&points(&[])], None).is_err());
         let place = DVec3::splat(3.3);
-        let point = Packing::new("a", &[&[place]], None).unwrap();
+        let point = Packing::new("a", &[&points(&[place])], None).unwrap();
         assert_eq!((point.offset, point.local(place)), (place, [0.0; 3]));
     }
 }

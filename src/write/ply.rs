@@ -9,12 +9,12 @@
 
 use std::io::Write;
 
-use glam::Vec4;
+use glam::{DVec3, Vec4};
 
 use super::layer::{Layer, Numbers, Scalar, layers};
 use super::{Export, WriteError};
 use crate::effects::byte_of_linear;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, VERTICES_AT_ONCE};
 use crate::pipeline::Photosurface;
 
 /// Writes one PLY, all photosurfaces at once.
@@ -24,14 +24,8 @@ use crate::pipeline::Photosurface;
 /// A mesh without triangles, a number at a vertex that is none, more than 2^32 - 1 vertices, or the writer fails.
 pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), WriteError> {
     let layers: Vec<Layer<'_>> = layers(export).collect();
-    let vertices: usize = layers
-        .iter()
-        .map(|layer| layer.mesh.positions().len())
-        .sum();
-    let triangles: usize = layers
-        .iter()
-        .map(|layer| layer.mesh.triangles().len())
-        .sum();
+    let vertices: usize = layers.iter().map(|layer| layer.mesh.vertex_count()).sum();
+    let triangles: usize = layers.iter().map(|layer| layer.mesh.triangle_count()).sum();
     if vertices > u32::MAX as usize {
         return Err(WriteError::TooManyVertices(vertices));
     }
@@ -45,7 +39,7 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
     let columns = scalars.first().map_or(0, Vec::len);
     let is_double = |column: usize| {
         let mut all = layers.iter().zip(&scalars);
-        !all.all(|(layer, scalars)| scalars[column].is_single(layer.mesh.positions().len()))
+        !all.all(|(layer, scalars)| scalars[column].is_single(layer.mesh.vertex_count()))
     };
     let doubles: Vec<bool> = (0..columns).map(is_double).collect();
     let with_colors = layers.iter().any(|layer| layer.mesh.colors().is_some());
@@ -63,7 +57,7 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
         "element vertex {vertices}\n\
          property double x\nproperty double y\nproperty double z\n",
     )?;
-    let with_normals = layers.iter().all(|layer| layer.mesh.normals().is_some());
+    let with_normals = layers.iter().all(|layer| layer.mesh.has_normals());
     if with_normals {
         writer.write_all(b"property float nx\nproperty float ny\nproperty float nz\n")?;
     }
@@ -92,14 +86,15 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
     }
     let mut first = 0u32;
     for layer in &layers {
-        for corners in layer.mesh.triangles().iter() {
+        let triangles = layer.mesh.shared_triangles();
+        for corners in (0..triangles.len()).map(|index| triangles.at(index)) {
             let mut face = [3; 13];
             for (bytes, corner) in face[1..].chunks_exact_mut(4).zip(corners) {
                 bytes.copy_from_slice(&(first + corner).to_le_bytes());
             }
             writer.write_all(&face)?;
         }
-        first += layer.mesh.positions().len() as u32;
+        first += layer.mesh.vertex_count() as u32;
     }
     Ok(())
 }
@@ -127,16 +122,17 @@ fn property<'a>(scalar: &Scalar<'a>) -> &'a str {
 /// No triangles, or a place that is not a number.
 pub(super) fn check_positions(name: &str, mesh: &Mesh) -> Result<(), WriteError> {
     let name = || name.to_owned();
-    if mesh.triangles().is_empty() {
+    if mesh.triangle_count() == 0 {
         return Err(WriteError::Empty(name()));
     }
-    match mesh.positions().iter().position(|p| !p.is_finite()) {
-        Some(vertex) => Err(WriteError::Overflow {
-            name: name(),
-            vertex,
-        }),
-        None => Ok(()),
+    if mesh.is_finite() {
+        return Ok(());
     }
+    let vertex = mesh.positions().iter().position(|p| !p.is_finite());
+    Err(WriteError::Overflow {
+        name: name(),
+        vertex: vertex.expect("one of them is not finite"),
+    })
 }
 
 fn write_vertices(
@@ -147,17 +143,22 @@ fn write_vertices(
     (with_normals, with_colors): (bool, bool),
 ) -> Result<(), WriteError> {
     let mesh = layer.mesh;
-    for (vertex, position) in mesh.positions().iter().enumerate() {
-        let normals = mesh.normals().filter(|_| with_normals);
-        for coordinate in layer.moved(*position).to_array() {
+    let mut positions = [DVec3::ZERO; VERTICES_AT_ONCE];
+    let mut normals = [DVec3::ZERO; VERTICES_AT_ONCE];
+    for vertex in 0..mesh.vertex_count() {
+        let in_piece = vertex % VERTICES_AT_ONCE;
+        if in_piece == 0 {
+            let count = VERTICES_AT_ONCE.min(mesh.vertex_count() - vertex);
+            let normals = with_normals.then_some(&mut normals[..count]);
+            mesh.read_vertices(vertex, &mut positions[..count], normals);
+        }
+        for coordinate in layer.moved(positions[in_piece]).to_array() {
             writer.write_all(&coordinate.to_le_bytes())?;
         }
-        for value in normals
-            .map(|normals| normals[vertex].to_array())
-            .into_iter()
-            .flatten()
-        {
-            writer.write_all(&(value as f32).to_le_bytes())?;
+        if with_normals {
+            for value in normals[in_piece].to_array() {
+                writer.write_all(&(value as f32).to_le_bytes())?;
+            }
         }
         for (scalar, is_double) in scalars.iter().zip(doubles) {
             let value = scalar.at(vertex);

@@ -1,7 +1,7 @@
 //! Whether the numbers of a file can hold what is seen, before any of the work.
 
 use super::layer::{Layer, Numbers};
-use super::pack::{Packing, bounds};
+use super::pack::Packing;
 use super::ply::check_positions;
 use super::{Format, WriteError};
 use crate::material::Part;
@@ -21,10 +21,7 @@ impl Format {
             ..SurfaceOptions::default()
         };
         // The boxes at rest, the same for all steps.
-        let of_part = |(_, part): &(String, Part)| {
-            let (low, high, _) = bounds(part.mesh().positions()).unwrap_or_default();
-            (low, high)
-        };
+        let of_part = |(_, part): &(String, Part)| part.mesh().bounds().unwrap_or_default();
         let objects = placed.objects();
         let boxes: Vec<Vec<_>> = objects
             .map(|(_, parts)| parts.iter().map(of_part).collect())
@@ -36,7 +33,7 @@ impl Format {
                 match self {
                     Self::Glb | Self::Gltf => {
                         let around = Some(photosurface.around);
-                        Packing::new(name, &[mesh.positions()], around).map_err(|error| {
+                        Packing::new(name, &[mesh], around).map_err(|error| {
                             by_cause(error, photosurface.facts.relative_rapidity)
                         })?;
                     }

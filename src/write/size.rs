@@ -1,6 +1,7 @@
 //! How large a file will be, before anything is computed: what is too large is refused in good time.
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use super::{Format, WriteError};
 use crate::material::Part;
@@ -59,12 +60,13 @@ fn min_gltf(parts: &[&Part], steps: u64, scalars: u64) -> u64 {
     let (mut of_step, mut of_all) = (0_u64, 0_u64);
     for part in parts {
         let mesh = part.mesh();
-        let vectors = 12 + mesh.normals().map_or(0, |_| 12) + mesh.tangents().map_or(0, |_| 16);
+        let vectors =
+            12 + if mesh.has_normals() { 12 } else { 0 } + mesh.tangents().map_or(0, |_| 16);
         let of_vertex = vectors + 4 * scalars;
-        of_step += of_vertex * mesh.positions().len() as u64;
+        of_step += of_vertex * mesh.vertex_count() as u64;
         of_all += once(
-            mesh.triangles().as_ptr() as usize,
-            size_of_val(mesh.triangles()),
+            Arc::as_ptr(mesh.shared_triangles()) as usize,
+            size_of::<[u32; 3]>() * mesh.triangle_count(),
         );
         for set in mesh.texture_coordinates() {
             of_all += once(set.as_ptr() as usize, size_of_val(&set[..]));
@@ -85,7 +87,7 @@ fn min_ply(parts: &[&Part], steps: u64, scalars: u64) -> Result<u64, WriteError>
         let each = parts.iter().map(|part| of(part.mesh()) as u64);
         steps.saturating_mul(each.sum())
     };
-    let vertices = count(|mesh| mesh.positions().len());
+    let vertices = count(|mesh| mesh.vertex_count());
     if vertices > u64::from(u32::MAX) {
         return Err(WriteError::TooManyVertices(vertices as usize));
     }
@@ -93,18 +95,16 @@ fn min_ply(parts: &[&Part], steps: u64, scalars: u64) -> Result<u64, WriteError>
         true => 4,
         false => 0,
     };
-    let normal = match parts.iter().all(|part| part.mesh().normals().is_some()) {
+    let normal = match parts.iter().all(|part| part.mesh().has_normals()) {
         true => 12,
         false => 0,
     };
     // Three f64 a vertex and what else it has, a byte and three u32 a triangle.
-    Ok((24 + normal + 4 * scalars + color) * vertices + 13 * count(|mesh| mesh.triangles().len()))
+    Ok((24 + normal + 4 * scalars + color) * vertices + 13 * count(|mesh| mesh.triangle_count()))
 }
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::super::{Export, write_glb, write_ply};
     use super::*;
     use crate::jobs::load_models;

@@ -86,6 +86,26 @@ impl Document<'_> {
         Ok(elements.iter().map(|&element| make(element)).collect())
     }
 
+    /// The elements of an accessor, each of three numbers, if they are plain floats, and whether `is_sound` holds for all
+    /// of them.
+    pub(super) fn singles(
+        &self,
+        index: Index<Accessor>,
+        expected: &Expected,
+        place: &str,
+        is_sound: impl Fn([f32; 3]) -> bool + Sync,
+    ) -> Result<Option<(Vec<[f32; 3]>, bool)>, ReadError> {
+        debug_assert!(expected.types.iter().any(|kind| kind.multiplicity() == 3));
+        let accessor = &self.root.accessors[index.value()];
+        if accessor.component_type.unwrap().0 != ComponentType::F32 {
+            return Ok(None);
+        }
+        let Some(run) = self.plain(index, expected, place)? else {
+            return Ok(None);
+        };
+        run.words(f32::from_le_bytes, is_sound).map(Some)
+    }
+
     /// Where the elements of an accessor are, if it says nothing but that.
     pub(super) fn plain(
         &self,

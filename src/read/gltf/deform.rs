@@ -12,6 +12,7 @@ use super::accessor::Expected;
 use super::document::Document;
 use super::nodes::{self, Rounded, Tree};
 use super::primitive::{Shape, Source};
+use crate::mesh::Vectors;
 use crate::read::note::Note;
 use crate::read::notes::add_note;
 use crate::read::{AccessorProblem, NodeProblem, ReadError};
@@ -79,13 +80,13 @@ pub(super) fn apply_morph(
         };
         if let Some(accessor) = target.positions {
             let displacements = displacements(accessor, "POSITION")?;
-            for (position, displacement) in shape.positions.iter_mut().zip(displacements) {
+            for (position, displacement) in shape.positions.as_mut().iter_mut().zip(displacements) {
                 *position += weight * displacement;
             }
         }
         if let (Some(accessor), Some(normals)) = (target.normals, &mut shape.normals) {
             let displacements = displacements(accessor, "NORMAL")?;
-            for (normal, displacement) in normals.iter_mut().zip(displacements) {
+            for (normal, displacement) in normals.as_mut().iter_mut().zip(displacements) {
                 *normal += weight * displacement;
             }
         }
@@ -256,6 +257,8 @@ impl Blend {
 
 fn pose(shape: &mut Shape, blends: &[Blend]) {
     let mut mirrored = 0;
+    let positions = shape.positions.as_mut();
+    let mut normals = shape.normals.as_mut().map(Vectors::as_mut);
     for (vertex, blend) in blends.iter().enumerate() {
         // Weights stored in bytes do not add up to 1 exactly.
         let linear = blend.linear * blend.weight.recip();
@@ -265,9 +268,9 @@ fn pose(shape: &mut Shape, blends: &[Blend]) {
             1.0
         };
         mirrored += usize::from(sign < 0.0);
-        let position = &mut shape.positions[vertex];
+        let position = &mut positions[vertex];
         *position = linear * *position + blend.translation / blend.weight;
-        if let Some(normals) = &mut shape.normals {
+        if let Some(normals) = &mut normals {
             let cofactor = DMat3::from_cols(
                 linear.y_axis.cross(linear.z_axis),
                 linear.z_axis.cross(linear.x_axis),

@@ -249,11 +249,11 @@ fn read_node(
 
 /// How many vectors a copy of a mesh has of its own. One without normals gets those of its triangles.
 fn numbers_of_a_copy(mesh: &Mesh) -> u64 {
-    let vertices = mesh.positions().len() as u64;
-    match (mesh.normals(), mesh.tangents()) {
-        (None, _) => 6 * mesh.triangles().len() as u64,
-        (Some(_), None) => 2 * vertices,
-        (Some(_), Some(_)) => 3 * vertices,
+    let vertices = mesh.vertex_count() as u64;
+    match (mesh.has_normals(), mesh.tangents()) {
+        (false, _) => 6 * mesh.triangle_count() as u64,
+        (true, None) => 2 * vertices,
+        (true, Some(_)) => 3 * vertices,
     }
 }
 

@@ -13,7 +13,7 @@ use gltf::json::{Accessor, Index};
 
 use super::accessor::{Expected, Numbers};
 use super::document::Document;
-use crate::mesh::{Mesh, check_triangles, unit_or_zero};
+use crate::mesh::{Mesh, Vectors, check_triangles};
 use crate::read::normals::replace_zero_normals;
 use crate::read::note::Note;
 use crate::read::notes::add_note;
@@ -65,13 +65,13 @@ pub(super) struct Source<'a> {
 
 /// The attributes of vertices that a change of shape changes.
 pub(super) struct Shape {
-    pub(super) positions: Vec<DVec3>,
-    pub(super) normals: Option<Vec<DVec3>>,
+    pub(super) positions: Vectors,
+    pub(super) normals: Option<Vectors>,
     pub(super) tangents: Option<Vec<DVec4>>,
     /// Whether the triangles have come to face the other way.
     pub(super) mirrored: bool,
-    /// Whether all positions and normals were seen to be finite, and the normals brought to unit length, each of
-    /// which has one.
+    /// Whether all positions and normals were seen to be finite, and the normals not to be zero; then they are of unit
+    /// length.
     pub(super) is_sound: bool,
 }
 
@@ -140,9 +140,10 @@ pub(super) fn read_primitive(
         let (positions, normals) = (shape.positions, shape.normals);
         Mesh::from_parts(positions, triangles.corners, normals, None, vec![], None)
     } else {
-        let mesh = Mesh::new(shape.positions, triangles.corners).map_err(wrong)?;
+        let positions = shape.positions.into_doubles();
+        let mesh = Mesh::new(positions, triangles.corners).map_err(wrong)?;
         match shape.normals {
-            Some(normals) => mesh.with_normals(normals).map_err(wrong)?,
+            Some(normals) => mesh.with_normals(normals.into_doubles()).map_err(wrong)?,
             None => mesh,
         }
     };
@@ -242,6 +243,28 @@ impl Source<'_> {
         self.elements(index, &VECTOR, name, vertices, DVec3::from_array)
     }
 
+    /// Vectors for all vertices, in the precision of the file, and whether `is_sound` holds for all of them.
+    fn checked_vectors(
+        &self,
+        index: Index<Accessor>,
+        name: &str,
+        vertices: usize,
+        is_sound: impl Fn(DVec3) -> bool + Sync,
+    ) -> Result<(Vectors, bool), ReadError> {
+        let place = self.check_count(index, name, vertices)?;
+        let of_single = |numbers: [f32; 3]| is_sound(DVec3::from_array(numbers.map(f64::from)));
+        if let Some((singles, are_sound)) =
+            self.document.singles(index, &VECTOR, &place, of_single)?
+        {
+            return Ok((Vectors::single(singles), are_sound));
+        }
+        let vectors = self
+            .document
+            .elements(index, &VECTOR, &place, DVec3::from_array)?;
+        let are_sound = vectors.iter().all(|&vector| is_sound(vector));
+        Ok((vectors.into(), are_sound))
+    }
+
     /// Colours for all vertices.
     fn colors(&self, index: Index<Accessor>, vertices: usize) -> Result<Vec<Vec4>, ReadError> {
         let full = self.full_scale(index);
@@ -259,8 +282,8 @@ impl Source<'_> {
 
     /// Positions, normals and tangents as they are stored.
     fn shape(&self) -> Result<Shape, ReadError> {
-        let sound = Sound::default();
-        let mut positions = vec![];
+        let mut is_sound = self.is_rigid();
+        let mut positions = Vectors::default();
         if let Some(index) = self.attribute(&Semantic::Positions) {
             let accessor = &self.document.root.accessors[index.value()];
             if accessor.buffer_view.is_none() && accessor.sparse.is_none() {
@@ -271,27 +294,23 @@ impl Source<'_> {
                 });
             }
             let count = self.document.count(index);
-            let make = |position: [f64; 3]| {
-                let position = DVec3::from_array(position);
-                sound.and(position.is_finite());
-                position
-            };
-            positions = self.elements(index, &VECTOR, "POSITION", count, make)?;
+            let (read, are_finite) =
+                self.checked_vectors(index, "POSITION", count, |p| p.is_finite())?;
+            is_sound &= are_finite;
+            positions = read;
         }
         let mut normals = None;
         if let Some(index) = self.attribute(&Semantic::Normals) {
             let count = positions.len();
-            let make = |normal: [f64; 3]| {
-                let unit = unit_or_zero(DVec3::from_array(normal));
-                sound.and(unit != DVec3::ZERO);
-                unit
-            };
-            if self.is_rigid() {
-                normals = Some(self.elements(index, &VECTOR, "NORMAL", count, make)?);
-            }
-            if !(self.is_rigid() && sound.get()) {
-                normals = Some(self.vectors(index, "NORMAL", count)?);
-            }
+            // Of any other the length is neither zero nor infinite.
+            let has_direction = |n: DVec3| n.is_finite() && n != DVec3::ZERO;
+            let (read, are_directions) =
+                self.checked_vectors(index, "NORMAL", count, has_direction)?;
+            is_sound &= are_directions;
+            normals = Some(match is_sound {
+                true => read.into_directions(),
+                false => read,
+            });
         }
         let tangents = self
             .attribute(&Semantic::Tangents)
@@ -305,7 +324,7 @@ impl Source<'_> {
             normals,
             tangents,
             mirrored: false,
-            is_sound: self.is_rigid() && sound.get(),
+            is_sound,
         })
     }
 
@@ -365,6 +384,13 @@ impl Source<'_> {
             count: run.count / 3,
             ..run
         };
+        if run.size == 4 {
+            // No index has the largest number, which is reserved.
+            let limit = u32::try_from(vertices).unwrap_or(u32::MAX);
+            let is_there = |corners: [u32; 3]| corners.iter().all(|&index| index < limit);
+            let (corners, are_there) = of_three.words(u32::from_le_bytes, is_there)?;
+            return Ok(are_there.then_some(corners));
+        }
         let (vertices, sound) = (vertices as u64, Sound::default());
         let checked = |corners: [u32; 3], restart: u32| {
             let limit = vertices.min(restart.into());
@@ -376,15 +402,10 @@ impl Source<'_> {
                 let corners = std::array::from_fn(|i| bytes[i].into());
                 checked(corners, u8::MAX.into())
             }),
-            2 => of_three.map(|bytes| {
+            _ => of_three.map(|bytes| {
                 let words = bytes.as_chunks().0;
                 let corners = std::array::from_fn(|i| u16::from_le_bytes(words[i]).into());
                 checked(corners, u16::MAX.into())
-            }),
-            _ => of_three.map(|bytes| {
-                let words = bytes.as_chunks().0;
-                let corners = std::array::from_fn(|i| u32::from_le_bytes(words[i]));
-                checked(corners, u32::MAX)
             }),
         }?;
         Ok(sound.get().then_some(corners))

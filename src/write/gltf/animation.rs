@@ -187,9 +187,9 @@ impl GltfFile<'_> {
 
 /// Whether one mesh becomes the other by moving its vertices.
 fn can_morph(from: &Mesh, to: &Mesh) -> bool {
-    from.positions().len() == to.positions().len()
+    from.vertex_count() == to.vertex_count()
         && from.shared_triangles() == to.shared_triangles()
-        && from.normals().is_some() == to.normals().is_some()
+        && from.has_normals() == to.has_normals()
         && from.tangents().is_some() == to.tangents().is_some()
 }
 

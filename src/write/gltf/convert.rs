@@ -5,11 +5,19 @@ use std::ops::Range;
 use std::sync::mpsc::sync_channel;
 use std::thread;
 
+use crate::mesh::VERTICES_AT_ONCE;
+
 /// Bytes that are converted at a time: they stay in the cache of a core until they are written.
 const PIECE: usize = 1 << 18;
 
+/// More threads than this make more than can be written.
+const MAX_MAKERS: usize = 4;
+
 /// What is shorter is converted and written on one thread: beginning another takes as long.
 const WORTH_A_THREAD: usize = 4 * PIECE;
+
+/// Pieces begin at multiples of so many items.
+const ITEMS_AT_ONCE: usize = VERTICES_AT_ONCE;
 
 /// Writes `count` items of so many four-byte words each, made by `convert` from their numbers; while some are written
 /// the next are made.
@@ -22,43 +30,70 @@ pub(super) fn write_items<const WORDS: usize>(
     count: usize,
     convert: impl Fn(usize) -> [[u8; 4]; WORDS] + Sync,
 ) -> io::Result<()> {
+    write_pieces(out, count, |first, items: &mut [[[u8; 4]; WORDS]]| {
+        for (index, item) in (first..).zip(items) {
+            *item = convert(index);
+        }
+    })
+}
+
+/// As [`write_items`], for items that `make` makes some at a time, from a multiple of [`ITEMS_AT_ONCE`] on.
+///
+/// # Errors
+///
+/// The writer fails.
+pub(super) fn write_pieces<const WORDS: usize>(
+    out: &mut impl Write,
+    count: usize,
+    make: impl Fn(usize, &mut [[[u8; 4]; WORDS]]) + Sync,
+) -> io::Result<()> {
     let size = 4 * WORDS;
-    let per_piece = PIECE / size;
-    let pieces = (0..count).step_by(per_piece);
-    let mut pieces = pieces.map(|first| first..count.min(first + per_piece));
+    let per_piece = (PIECE / size).next_multiple_of(ITEMS_AT_ONCE);
+    let pieces = |from: usize, each: usize| {
+        let firsts = (from * per_piece..count).step_by(each * per_piece);
+        firsts.map(move |first| first..count.min(first + per_piece))
+    };
     let make = |piece: Range<usize>, bytes: &mut Vec<u8>| {
         bytes.resize(piece.len() * size, 0);
         let (words, _) = bytes.as_chunks_mut();
         let (items, _) = words.as_chunks_mut();
-        for (index, item) in piece.zip(items) {
-            *item = convert(index);
-        }
+        make(piece.start, items);
     };
     if count * size < WORTH_A_THREAD {
         let mut bytes = vec![];
-        return pieces.try_for_each(|piece| {
+        return pieces(0, 1).try_for_each(|piece| {
             make(piece, &mut bytes);
             out.write_all(&bytes)
         });
     }
+    let makers = rayon::current_num_threads().clamp(1, MAX_MAKERS);
     thread::scope(|scope| {
-        // Two pieces go round: one is made while the other is written.
-        let (full, made) = sync_channel(1);
-        let (written, empty) = sync_channel(2);
-        for _ in 0..2 {
-            written.send(vec![]).expect("there is room for both");
-        }
-        scope.spawn(move || {
-            for piece in pieces {
-                // Either fails when the writer did, and nobody waits any more.
-                let Ok(mut bytes) = empty.recv() else { return };
-                make(piece, &mut bytes);
-                if full.send(bytes).is_err() {
-                    return;
-                }
+        // Each maker makes every so many-th piece; two pieces of each go round: one is made while the other is written.
+        let ends = (0..makers).map(|maker| {
+            let (full, made) = sync_channel(1);
+            let (written, empty) = sync_channel(2);
+            for _ in 0..2 {
+                written.send(vec![]).expect("there is room for both");
             }
+            let (pieces, make) = (pieces(maker, makers), &make);
+            scope.spawn(move || {
+                for piece in pieces {
+                    // Either fails when the writer did, and nobody waits any more.
+                    let Ok(mut bytes) = empty.recv() else { return };
+                    make(piece, &mut bytes);
+                    if full.send(bytes).is_err() {
+                        return;
+                    }
+                }
+            });
+            (made, written)
         });
-        for bytes in made {
+        let ends: Vec<_> = ends.collect();
+        for (made, written) in ends.iter().cycle() {
+            // The maker of the piece that would come next has ended: there is none.
+            let Ok(bytes) = made.recv() else {
+                return Ok(());
+            };
             out.write_all(&bytes)?;
             // When all are made nobody waits for another.
             let _ = written.send(bytes);

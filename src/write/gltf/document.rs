@@ -9,13 +9,15 @@ use std::marker::PhantomData;
 use std::path::Path;
 use std::sync::Arc;
 
+use glam::DVec3;
 use gltf::json::validation::{Checked, USize64};
 use gltf::json::{self, Index, accessor, buffer};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::convert::write_items;
+use super::convert::{write_items, write_pieces};
 use super::glb::Json;
+use crate::mesh::{Mesh, Triangles, VERTICES_AT_ONCE};
 use crate::write::pack::Bounds;
 use crate::write::text::LongText;
 use crate::write::{GltfOutput, WriteError};
@@ -109,7 +111,7 @@ impl<'a> Document<'a> {
     /// Those of `make`.
     pub(super) fn shared<T: Send + Sync + 'static>(
         &mut self,
-        original: &Arc<Vec<T>>,
+        original: &Arc<T>,
         make: impl FnOnce(&mut Self) -> Result<Index<json::Accessor>, WriteError>,
     ) -> Result<Index<json::Accessor>, WriteError> {
         // What is not shared now never will be, and need not be kept in memory.
@@ -151,6 +153,22 @@ impl<'a> Document<'a> {
         bounds: Option<Bounds<N>>,
         of_what: AccessorRole,
     ) -> Result<Index<json::Accessor>, WriteError> {
+        let number = |index: usize| vector(index, &values[index]);
+        self.numbers(values.len(), number, bounds, of_what)
+    }
+
+    /// So many small vectors.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be written.
+    pub(super) fn numbers<const N: usize>(
+        &mut self,
+        count: usize,
+        vector: impl Fn(usize) -> [f32; N] + Sync,
+        bounds: Option<Bounds<N>>,
+        of_what: AccessorRole,
+    ) -> Result<Index<json::Accessor>, WriteError> {
         let target = match of_what {
             AccessorRole::VertexAttribute => Some(buffer::Target::ArrayBuffer),
             AccessorRole::KeyFrames => None,
@@ -161,12 +179,73 @@ impl<'a> Document<'a> {
             3 => accessor::Type::Vec3,
             _ => accessor::Type::Vec4,
         };
-        let view = self.view(4 * N * values.len(), target, |output| {
-            let item = |index| vector(index, &values[index]).map(f32::to_le_bytes);
-            write_items(output, values.len(), item)
+        let view = self.view(4 * N * count, target, |output| {
+            write_items(output, count, |index| vector(index).map(f32::to_le_bytes))
         })?;
         let kind = (accessor::ComponentType::F32, shape);
-        self.accessor(view, values.len(), kind, bounds)
+        self.accessor(view, count, kind, bounds)
+    }
+
+    /// Three numbers made of the position of each vertex of a mesh.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be written.
+    pub(super) fn positions(
+        &mut self,
+        mesh: &Mesh,
+        numbers: impl Fn(DVec3) -> [f32; 3] + Sync,
+        bounds: Bounds<3>,
+    ) -> Result<Index<json::Accessor>, WriteError> {
+        self.of_vertices(mesh, Some(bounds), |first, items| {
+            let mut positions = [DVec3::ZERO; VERTICES_AT_ONCE];
+            let positions = &mut positions[..items.len()];
+            mesh.read_vertices(first, positions, None);
+            for (item, &position) in items.iter_mut().zip(&*positions) {
+                *item = numbers(position).map(f32::to_le_bytes);
+            }
+        })
+    }
+
+    /// Three numbers made of the normal of each vertex of a mesh, which has some.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be written.
+    pub(super) fn normals(
+        &mut self,
+        mesh: &Mesh,
+        numbers: impl Fn(DVec3) -> [f32; 3] + Sync,
+    ) -> Result<Index<json::Accessor>, WriteError> {
+        self.of_vertices(mesh, None, |first, items| {
+            let mut positions = [DVec3::ZERO; VERTICES_AT_ONCE];
+            let mut normals = [DVec3::ZERO; VERTICES_AT_ONCE];
+            let (positions, normals) = (&mut positions[..items.len()], &mut normals[..items.len()]);
+            mesh.read_vertices(first, positions, Some(&mut *normals));
+            for (item, &normal) in items.iter_mut().zip(&*normals) {
+                *item = numbers(normal).map(f32::to_le_bytes);
+            }
+        })
+    }
+
+    fn of_vertices(
+        &mut self,
+        mesh: &Mesh,
+        bounds: Option<Bounds<3>>,
+        make: impl Fn(usize, &mut [[[u8; 4]; 3]]) + Sync,
+    ) -> Result<Index<json::Accessor>, WriteError> {
+        let count = mesh.vertex_count();
+        let target = Some(buffer::Target::ArrayBuffer);
+        let view = self.view(12 * count, target, |output| {
+            write_pieces(output, count, |first, items: &mut [_]| {
+                let firsts = (first..).step_by(VERTICES_AT_ONCE);
+                for (first, items) in firsts.zip(items.chunks_mut(VERTICES_AT_ONCE)) {
+                    make(first, items);
+                }
+            })
+        })?;
+        let kind = (accessor::ComponentType::F32, accessor::Type::Vec3);
+        self.accessor(view, count, kind, bounds)
     }
 
     /// Four bytes for each vertex, from 0 to 1.
@@ -194,11 +273,11 @@ impl<'a> Document<'a> {
     /// The file cannot be written.
     pub(super) fn indices(
         &mut self,
-        triangles: &[[u32; 3]],
+        triangles: &Triangles,
     ) -> Result<Index<json::Accessor>, WriteError> {
         let target = Some(buffer::Target::ElementArrayBuffer);
-        let view = self.view(size_of_val(triangles), target, |output| {
-            let item = |index: usize| triangles[index].map(u32::to_le_bytes);
+        let view = self.view(12 * triangles.len(), target, |output| {
+            let item = |index: usize| triangles.at(index).map(u32::to_le_bytes);
             write_items(output, triangles.len(), item)
         })?;
         let kind = (accessor::ComponentType::U32, accessor::Type::Scalar);

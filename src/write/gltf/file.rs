@@ -167,25 +167,17 @@ impl<'a> GltfFile<'a> {
     ) -> Result<Index<json::Node>, WriteError> {
         let name = layer.name;
         let mesh = steps[0];
-        if mesh.triangles().is_empty() {
+        if mesh.triangle_count() == 0 {
             return Err(WriteError::Empty(name.to_owned()));
         }
-        let positions: Vec<_> = steps.iter().map(|mesh| mesh.positions()).collect();
-        let packing = Packing::new(name, &positions, layer.around)?;
+        let packing = Packing::new(name, steps, layer.around)?;
         let document = &mut self.document;
-        let local = |_: usize, place: &DVec3| packing.local(*place);
-        let bounds = Some(packing.local_bounds());
-        let places = document.vectors(
-            mesh.positions(),
-            local,
-            bounds,
-            AccessorRole::VertexAttribute,
-        )?;
+        let bounds = packing.local_bounds();
+        let places = document.positions(mesh, |place| packing.local(place), bounds)?;
         let mut attributes = vec![(Semantic::Positions, places)];
-        if let Some(normals) = mesh.normals() {
-            let direction = |_: usize, normal: &DVec3| unit_or_up(*normal).as_vec3().to_array();
-            let accessor =
-                document.vectors(normals, direction, None, AccessorRole::VertexAttribute)?;
+        if mesh.has_normals() {
+            let direction = |normal: DVec3| unit_or_up(normal).as_vec3().to_array();
+            let accessor = document.normals(mesh, direction)?;
             attributes.push((Semantic::Normals, accessor));
         }
         if let Some(tangents) = mesh.tangents() {
@@ -211,9 +203,9 @@ impl<'a> GltfFile<'a> {
             attributes.push((Semantic::Colors(0), accessor));
         }
         for scalar in scalars {
-            let number = |vertex: usize, _: &DVec3| [scalar.at(vertex) as f32];
-            let accessor = document.vectors(
-                mesh.positions(),
+            let number = |vertex: usize| [scalar.at(vertex) as f32];
+            let accessor = document.numbers(
+                mesh.vertex_count(),
                 number,
                 None,
                 AccessorRole::VertexAttribute,
