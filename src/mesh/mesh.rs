@@ -221,11 +221,6 @@ impl Mesh {
         self.vertices.places()
     }
 
-    /// The positions as they are held.
-    pub(super) fn shared_positions(&self) -> Arc<Vectors> {
-        self.vertices.clone().into_held().0
-    }
-
     /// Unit tangents with the sign of the bitangent.
     pub fn tangents(&self) -> Option<&[DVec4]> {
         self.tangents.as_deref().map(Vec::as_slice)
@@ -234,6 +229,11 @@ impl Mesh {
     /// All sets of texture coordinates.
     pub fn texture_coordinates(&self) -> &[Arc<Vec<Vec2>>] {
         &self.texture_coordinates
+    }
+
+    /// The positions as they are held.
+    pub(super) fn shared_positions(&self) -> Arc<Vectors> {
+        self.vertices.clone().into_held().0
     }
 
     /// The positions of the corners of one triangle.
@@ -702,6 +702,60 @@ mod tests {
         }
         let same = original.clone().transformed(&DAffine3::IDENTITY);
         assert_eq!(original.positions().as_ptr(), same.positions().as_ptr());
+    }
+
+    /// Facets of a large mesh are computed, those of a small one are at hand; nobody can tell which.
+    #[test]
+    fn flat_facets_are_the_same_wherever_they_come_from() {
+        let rows = 300;
+        let place = |k: u32| {
+            let (x, y) = (f64::from(k % rows), f64::from(k / rows));
+            DVec3::new(x, (0.1 * x).sin() * y.cos(), y)
+        };
+        let quad = |k: u32| [[k, k + 1, k + rows + 1], [k, k + rows + 1, k + rows]];
+        let quads = (0..rows * (rows - 1)).filter(|k| k % rows < rows - 1);
+        let triangles: Vec<[u32; 3]> = quads.flat_map(quad).collect();
+        // The last one is in no triangle.
+        let places: Vec<DVec3> = (0..rows * rows)
+            .map(place)
+            .chain([DVec3::splat(1e9)])
+            .collect();
+        let sheet = Mesh::new(places, triangles.clone()).unwrap();
+        let large = sheet.clone().with_flat_normals().unwrap();
+        assert!(large.vertex_count() > MANY_VERTICES && large.vertices.facets().is_some());
+        let corners = triangles.iter().flatten();
+        let positions = corners.map(|&corner| sheet.positions()[corner as usize]);
+        let positions: Vec<DVec3> = positions.collect();
+        let normals = large.normals().unwrap().to_vec();
+        let listed = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
+        let own = Mesh::from_parts(
+            positions,
+            listed.collect(),
+            Some(normals.into()),
+            None,
+            vec![],
+            None,
+        );
+        assert_eq!(large.bounds(), own.bounds());
+        // None of them is shown where they differ, for they are long.
+        assert!(large == own);
+        assert_eq!(large.corners_of(7), own.corners_of(7));
+        let twice = large.clone().without_normals().with_flat_normals().unwrap();
+        assert!(twice == own);
+        let mirror = DAffine3::from_scale(DVec3::new(-1.0, 2.0, 1.0));
+        let moved = sheet
+            .clone()
+            .with_flat_normals()
+            .unwrap()
+            .transformed(&mirror);
+        assert!(moved == own.transformed(&mirror));
+        // A part of it is small.
+        let few = Mesh::new(sheet.positions().to_vec(), triangles[..100].to_vec()).unwrap();
+        let few = few.with_flat_normals().unwrap();
+        assert!(few.vertices.facets().is_none());
+        assert!(few.positions() == &large.positions()[..300]);
+        assert!(few.normals().unwrap() == &large.normals().unwrap()[..300]);
+        assert_eq!(few.triangles(), &large.triangles()[..100]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Triangle meshes at rest: geometry, and the attributes that travel with it.
 
+mod alike;
 mod edges;
 mod mesh;
 mod smooth;

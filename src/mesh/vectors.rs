@@ -3,6 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use glam::{DAffine3, DMat3, DVec3};
+use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
 use super::mesh::{VALUES_PER_JOB, change, unit_or_zero};
@@ -157,22 +158,11 @@ impl Vectors {
         let part = first..first + vectors.len();
         match self {
             Self::Double(all) => vectors.copy_from_slice(&all[part]),
-            Self::Single(singles) => {
-                let numbers = &singles.numbers[part];
-                // One loop for each meaning.
-                match singles.meaning {
-                    Meaning::Plain => fill(vectors, numbers, |n| Meaning::Plain.vector(n)),
-                    Meaning::Directions => {
-                        fill(vectors, numbers, |n| Meaning::Directions.vector(n));
-                    }
-                    Meaning::Moved(way) => {
-                        fill(vectors, numbers, |n| Meaning::Moved(way).vector(n))
-                    }
-                    Meaning::Placed(transform) => {
-                        fill(vectors, numbers, |n| Meaning::Placed(transform).vector(n));
-                    }
-                }
-            }
+            Self::Single(singles) => Arch::new().dispatch(Widened {
+                numbers: &singles.numbers[part],
+                meaning: singles.meaning,
+                vectors,
+            }),
         }
     }
 
@@ -249,9 +239,145 @@ impl Vectors {
     }
 }
 
+/// Vectors in `f64` in the making, several in one instruction where the processor can.
+struct Widened<'a> {
+    numbers: &'a [[f32; 3]],
+    meaning: Meaning,
+    vectors: &'a mut [DVec3],
+}
+
+/// Number of vectors that are made together: enough for the longest vector registers.
+const BLOCK: usize = 32;
+
+impl NullaryFnOnce for Widened<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let (numbers, last_numbers) = self.numbers.as_chunks::<BLOCK>();
+        let (vectors, last_vectors) = self.vectors.as_chunks_mut::<BLOCK>();
+        let blocks = vectors.iter_mut().zip(numbers);
+        // One loop for each meaning.
+        match self.meaning {
+            Meaning::Plain => blocks.for_each(|(to, from)| by_columns(to, from, |vector| vector)),
+            Meaning::Moved(way) => {
+                let [x, y, z] = way.to_array();
+                let moved = |[a, b, c]: [f64; 3]| [a + x, b + y, c + z];
+                blocks.for_each(|(to, from)| by_columns(to, from, moved));
+            }
+            Meaning::Directions => blocks.for_each(|(to, from)| {
+                by_columns(to, from, short_way_to_unit);
+                // What that is not good for is rare.
+                if !to.iter().all(|vector| vector.is_finite()) {
+                    for (to, &from) in to.iter_mut().zip(from) {
+                        *to = self.meaning.vector(from);
+                    }
+                }
+            }),
+            Meaning::Placed(transform) => {
+                let placed = |vector: [f64; 3]| {
+                    let place = transform.transform_point3(DVec3::from_array(vector));
+                    place.to_array()
+                };
+                blocks.for_each(|(to, from)| by_columns(to, from, placed));
+            }
+        }
+        for (to, &from) in last_vectors.iter_mut().zip(last_numbers) {
+            *to = self.meaning.vector(from);
+        }
+    }
+}
+
+/// A vector of ordinary numbers, as all `f32` but zero are, brought to unit length as [`unit_or_zero`] does.
 #[inline(always)]
-fn fill(vectors: &mut [DVec3], numbers: &[[f32; 3]], vector: impl Fn([f32; 3]) -> DVec3) {
-    for (to, &from) in vectors.iter_mut().zip(numbers) {
-        *to = vector(from);
+fn short_way_to_unit([x, y, z]: [f64; 3]) -> [f64; 3] {
+    let inverse = (x * x + y * y + z * z).sqrt().recip();
+    [x * inverse, y * inverse, z * inverse]
+}
+
+/// Makes vectors of numbers that are stored coordinate by coordinate meanwhile, so that the compiler can use vector
+/// instructions.
+#[inline(always)]
+fn by_columns(
+    vectors: &mut [DVec3; BLOCK],
+    numbers: &[[f32; 3]; BLOCK],
+    make: impl Fn([f64; 3]) -> [f64; 3],
+) {
+    let mut columns = [[0.0; BLOCK]; 3];
+    for (index, numbers) in numbers.iter().enumerate() {
+        for (column, &number) in columns.iter_mut().zip(numbers) {
+            column[index] = f64::from(number);
+        }
+    }
+    let [x, y, z] = &mut columns;
+    for index in 0..BLOCK {
+        [x[index], y[index], z[index]] = make([x[index], y[index], z[index]]);
+    }
+    for (index, vector) in vectors.iter_mut().enumerate() {
+        *vector = DVec3 {
+            x: x[index],
+            y: y[index],
+            z: z[index],
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_at_once_are_the_same_as_one_by_one() {
+        let numbers: Vec<[f32; 3]> = (0..1000u16)
+            .map(|k| {
+                let turn = f32::from(k);
+                match k % 97 {
+                    3 => [0.0, -0.0, 0.0],
+                    5 => [1e-45, -1e-45, 0.0],
+                    7 => [3e38, -3e38, 3e38],
+                    _ => [turn.sin(), -0.0, turn.cos()],
+                }
+            })
+            .collect();
+        let turn = DAffine3::from_rotation_z(0.3);
+        for transform in [
+            None,
+            Some(DAffine3::from_translation(DVec3::new(1.0, 0.0, 2.0))),
+            Some(DAffine3::from_translation(DVec3::new(1.0, -0.0, 2.0))),
+            Some(turn),
+        ] {
+            let mut places = Arc::new(Vectors::single(numbers.clone()));
+            let mut doubles = Arc::new(Vectors::Double(places.as_slice().to_vec()));
+            if let Some(transform) = &transform {
+                places.placed(transform);
+                doubles.placed(transform);
+                assert!(matches!(*places, Vectors::Single(_)));
+            }
+            check(&places, doubles.as_slice());
+        }
+        let directions = Vectors::single(numbers.clone()).into_directions();
+        let widened = Vectors::single(numbers).into_doubles();
+        let expected = Vectors::Double(widened).into_directions();
+        check(&directions, expected.as_slice());
+    }
+
+    fn check(vectors: &Vectors, expected: &[DVec3]) {
+        let bits = |vectors: &[DVec3]| -> Vec<[u64; 3]> {
+            let bits = |vector: &DVec3| vector.to_array().map(f64::to_bits);
+            vectors.iter().map(bits).collect()
+        };
+        assert_eq!(vectors.len(), expected.len());
+        let mut read = vec![DVec3::ONE; expected.len()];
+        vectors.read(0, &mut read);
+        assert_eq!(bits(&read), bits(expected));
+        let places = vectors.places();
+        let one_by_one: Vec<DVec3> = (0..read.len() as u32).map(|i| places.at(i)).collect();
+        assert_eq!(bits(&one_by_one), bits(expected));
+        assert_eq!(bits(vectors.as_slice()), bits(expected));
+        let picked = vectors.picked(&[7, 5, 5]);
+        assert_eq!(
+            bits(picked.as_slice()),
+            bits(&[expected[7], expected[5], expected[5]])
+        );
     }
 }

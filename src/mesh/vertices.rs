@@ -262,3 +262,49 @@ impl Computed {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Triangles between `count` places, some of which are the same.
+    fn strip(count: u32) -> (Arc<Vectors>, Arc<Triangles>) {
+        let place = |k: u32| [(k as f32).sin(), (k / 2) as f32, -0.0];
+        let triangles: Vec<[u32; 3]> = (0..count - 2).map(|k| [k, k + 1, k + 2]).collect();
+        let places = Vectors::single((0..count).map(place).collect());
+        (Arc::new(places), Arc::new(triangles.into()))
+    }
+
+    #[test]
+    fn facets_are_the_same_all_at_once_and_piece_by_piece() {
+        for count in [3, 342, 343, 344, 1025, 5000] {
+            let (places, triangles) = strip(count);
+            let (mut positions, mut normals) = (vec![], vec![]);
+            for &corners in triangles.as_slice() {
+                let corners = corners.map(|corner| places.places().at(corner));
+                positions.extend(corners);
+                normals.extend([flat_normal(corners); 3]);
+            }
+            let vertices = || Vertices::of_facets(places.clone(), triangles.clone());
+            let (by_pieces, at_once) = (vertices(), vertices());
+            assert_eq!(at_once.positions(), positions);
+            assert_eq!(at_once.normals().unwrap(), normals);
+            // Then they are at hand, and read from there.
+            for vertices in [&by_pieces, &at_once] {
+                assert_eq!(vertices.len(), positions.len());
+                for first in (0..positions.len()).step_by(VERTICES_AT_ONCE) {
+                    let length = VERTICES_AT_ONCE.min(positions.len() - first);
+                    let part = first..first + length;
+                    let mut places = vec![DVec3::NAN; length];
+                    vertices.read(first, &mut places, None);
+                    assert_eq!(places, positions[part.clone()]);
+                    let mut directions = places.clone();
+                    vertices.read(first, &mut places, Some(&mut directions));
+                    assert_eq!(places, positions[part.clone()]);
+                    assert_eq!(directions, normals[part]);
+                }
+            }
+            assert!(matches!(&by_pieces, Vertices::Computed(all) if all.all.get().is_none()));
+        }
+    }
+}

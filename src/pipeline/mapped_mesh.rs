@@ -155,3 +155,40 @@ fn places(view: &View, rest: &Mesh) -> (Vec<DVec3>, Vec<DVec3>, Extremes) {
     let extremes = extremes.into_iter().fold(Extremes::NONE, Extremes::and);
     (flattened(positions), flattened(normals), extremes)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::Shape;
+    use crate::spacetime::{Event, Velocity, WorldLine};
+
+    #[test]
+    fn vertices_are_seen_the_same_at_hand_or_wherever_they_are_wanted() {
+        let line = |position, velocity| WorldLine {
+            origin: Event::new(0.0, position),
+            velocity,
+        };
+        let velocity = Velocity::from_beta(0.9, DVec3::new(1.0, 2.0, -3.0)).unwrap();
+        let observer = line(DVec3::new(0.1, 0.2, 4.0), velocity).moment(0.25);
+        let view = View::new(&observer, &line(DVec3::ZERO, Velocity::default()));
+        let torus = Shape::torus(2.0, 0.5).unwrap().mesh().unwrap();
+        for rest in [torus.clone(), torus.without_normals(), Mesh::default()] {
+            let at_hand = MappedMesh::new(&view, &rest);
+            let computed = MappedMesh::computed(view, &rest, None);
+            assert_eq!(computed.extremes, at_hand.extremes);
+            assert_eq!(computed.mesh.bounds(), at_hand.mesh.bounds());
+            assert_eq!(computed.mesh.has_normals(), rest.has_normals());
+            let count = rest.vertex_count();
+            let mut read = [vec![DVec3::ZERO; count], vec![DVec3::ZERO; count]];
+            let [places, directions] = &mut read;
+            computed.mesh.read_vertices(0, places, None);
+            assert_eq!(places, at_hand.mesh.positions());
+            if let Some(normals) = at_hand.mesh.normals() {
+                computed.mesh.read_vertices(0, places, Some(directions));
+                assert_eq!(directions, normals);
+            }
+            assert_eq!(places, at_hand.mesh.positions());
+            assert!(computed.mesh == at_hand.mesh);
+        }
+    }
+}
