@@ -7,6 +7,7 @@ use glam::{DAffine3, DMat3, DVec3, DVec4, Vec2, Vec4};
 use rayon::prelude::*;
 use thiserror::Error;
 
+use super::extent::Extent;
 use super::triangles::Triangles;
 use super::vectors::{Places, Vectors};
 use super::vertices::{Compute, MANY_VERTICES, VERTICES_AT_ONCE, Vertices};
@@ -508,40 +509,6 @@ pub(super) fn flat_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     unit((b - a).cross(c - a)).unwrap_or(DVec3::Y)
 }
 
-/// Where some positions are.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Extent {
-    low: DVec3,
-    high: DVec3,
-    is_finite: bool,
-}
-
-impl Extent {
-    /// That of these positions and of those that are `known`.
-    pub(crate) fn around(known: Option<Self>, positions: &[DVec3]) -> Option<Self> {
-        let first = known.or_else(|| positions.first().copied().map(Self::of_one))?;
-        let others = positions.iter().copied().map(Self::of_one);
-        Some(others.fold(first, Self::with))
-    }
-
-    fn of_one(position: DVec3) -> Self {
-        Self {
-            low: position,
-            high: position,
-            is_finite: position.is_finite(),
-        }
-    }
-
-    /// That of both.
-    pub(crate) fn with(self, other: Self) -> Self {
-        Self {
-            low: self.low.min(other.low),
-            high: self.high.max(other.high),
-            is_finite: self.is_finite & other.is_finite,
-        }
-    }
-}
-
 /// Something known of a mesh that is no part of what it is.
 #[derive(Clone, Debug)]
 struct Remembered<T>(OnceLock<T>);
@@ -599,8 +566,7 @@ pub(crate) fn check_triangles(triangles: &[[u32; 3]], vertices: usize) -> Result
         return Err(MeshError::TooManyVertices(vertices));
     }
     let is_wrong = |corners: &[u32; 3]| corners.iter().any(|&i| i as usize >= vertices);
-    let jobs = triangles.par_iter().with_min_len(VALUES_PER_JOB);
-    let Some(triangle) = jobs.position_first(is_wrong) else {
+    let Some(triangle) = first_of(triangles, is_wrong) else {
         return Ok(());
     };
     let mut corners = triangles[triangle].into_iter();
@@ -610,6 +576,17 @@ pub(crate) fn check_triangles(triangles: &[[u32; 3]], vertices: usize) -> Result
         index: index.expect("one of them is"),
         vertices,
     })
+}
+
+/// The first value that something holds of. Nearly always there is none, and no number is looked for where there is none.
+fn first_of<T: Sync>(values: &[T], holds: impl Fn(&T) -> bool + Sync) -> Option<usize> {
+    let jobs = values.par_chunks(VALUES_PER_JOB);
+    let holds_of_any = |job: &[T]| job.iter().fold(false, |any, value| any | holds(value));
+    let job = jobs.position_first(holds_of_any)?;
+    values[job * VALUES_PER_JOB..]
+        .iter()
+        .position(holds)
+        .map(|index| job * VALUES_PER_JOB + index)
 }
 
 fn check<T: std::fmt::Display + Sync>(
@@ -625,8 +602,7 @@ fn check<T: std::fmt::Display + Sync>(
             vertices,
         });
     }
-    let jobs = values.par_iter().with_min_len(VALUES_PER_JOB);
-    match jobs.position_first(|value| !is_finite(value)) {
+    match first_of(values, |value| !is_finite(value)) {
         Some(vertex) => Err(MeshError::NotFinite {
             attribute,
             vertex,

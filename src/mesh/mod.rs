@@ -2,6 +2,7 @@
 
 mod alike;
 mod edges;
+mod extent;
 mod mesh;
 mod smooth;
 mod triangles;
@@ -9,8 +10,9 @@ mod vectors;
 mod vertices;
 mod winding;
 
-pub(crate) use mesh::{Extent, VALUES_PER_JOB, check_triangles, unit_or_zero};
+pub(crate) use extent::Extent;
 pub use mesh::{Mesh, MeshError};
+pub(crate) use mesh::{VALUES_PER_JOB, check_triangles, unit_or_zero};
 pub(crate) use triangles::Triangles;
 pub(crate) use vectors::{Places, Vectors};
 pub(crate) use vertices::{MANY_VERTICES, VERTICES_AT_ONCE};

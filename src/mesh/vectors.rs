@@ -82,6 +82,49 @@ impl Places<'_> {
     }
 }
 
+impl Places<'_> {
+    /// Writes the offsets from `origin` of the three corners of up to `N` triangles, coordinate by coordinate.
+    #[inline(always)]
+    pub(crate) fn write_offsets<const N: usize>(
+        &self,
+        triangles: &[[u32; 3]],
+        origin: DVec3,
+        offsets: &mut [[[f64; N]; 3]; 3],
+    ) {
+        // One loop for each way to hold them.
+        match *self {
+            Self::Double(places) => {
+                write_offsets(triangles, origin, offsets, |index| places[index as usize]);
+            }
+            Self::Single(numbers, Meaning::Moved(way)) => {
+                let vector = |index| Meaning::Moved(way).vector(numbers[index as usize]);
+                write_offsets(triangles, origin, offsets, vector);
+            }
+            Self::Single(numbers, meaning) => {
+                let vector = |index| meaning.vector(numbers[index as usize]);
+                write_offsets(triangles, origin, offsets, vector);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn write_offsets<const N: usize>(
+    triangles: &[[u32; 3]],
+    origin: DVec3,
+    offsets: &mut [[[f64; N]; 3]; 3],
+    place: impl Fn(u32) -> DVec3,
+) {
+    for (index, corners) in triangles.iter().enumerate().take(N) {
+        for (offsets, &corner) in offsets.iter_mut().zip(corners) {
+            let offset = place(corner) - origin;
+            offsets[0][index] = offset.x;
+            offsets[1][index] = offset.y;
+            offsets[2][index] = offset.z;
+        }
+    }
+}
+
 impl Default for Vectors {
     fn default() -> Self {
         Self::Double(vec![])
@@ -254,37 +297,35 @@ impl NullaryFnOnce for Widened<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let (numbers, last_numbers) = self.numbers.as_chunks::<BLOCK>();
-        let (vectors, last_vectors) = self.vectors.as_chunks_mut::<BLOCK>();
-        let blocks = vectors.iter_mut().zip(numbers);
         // One loop for each meaning.
+        let all = self.vectors.iter_mut().zip(self.numbers);
         match self.meaning {
-            Meaning::Plain => blocks.for_each(|(to, from)| by_columns(to, from, |vector| vector)),
+            Meaning::Plain => all.for_each(|(to, &from)| *to = Meaning::Plain.vector(from)),
             Meaning::Moved(way) => {
-                let [x, y, z] = way.to_array();
-                let moved = |[a, b, c]: [f64; 3]| [a + x, b + y, c + z];
-                blocks.for_each(|(to, from)| by_columns(to, from, moved));
+                all.for_each(|(to, &from)| *to = Meaning::Moved(way).vector(from))
             }
-            Meaning::Directions => blocks.for_each(|(to, from)| {
-                by_columns(to, from, short_way_to_unit);
-                // What that is not good for is rare.
-                if !to.iter().all(|vector| vector.is_finite()) {
-                    for (to, &from) in to.iter_mut().zip(from) {
-                        *to = self.meaning.vector(from);
+            Meaning::Placed(transform) => {
+                all.for_each(|(to, &from)| *to = Meaning::Placed(transform).vector(from));
+            }
+            Meaning::Directions => {
+                let (numbers, last_numbers) = self.numbers.as_chunks::<BLOCK>();
+                let (vectors, last_vectors) = self.vectors.as_chunks_mut::<BLOCK>();
+                for (vectors, numbers) in vectors.iter_mut().zip(numbers) {
+                    by_columns(vectors, numbers, short_way_to_unit);
+                    // What that is not good for is rare.
+                    if !vectors.iter().all(|vector| vector.is_finite()) {
+                        one_by_one(vectors, numbers);
                     }
                 }
-            }),
-            Meaning::Placed(transform) => {
-                let placed = |vector: [f64; 3]| {
-                    let place = transform.transform_point3(DVec3::from_array(vector));
-                    place.to_array()
-                };
-                blocks.for_each(|(to, from)| by_columns(to, from, placed));
+                one_by_one(last_vectors, last_numbers);
             }
         }
-        for (to, &from) in last_vectors.iter_mut().zip(last_numbers) {
-            *to = self.meaning.vector(from);
-        }
+    }
+}
+
+fn one_by_one(vectors: &mut [DVec3], numbers: &[[f32; 3]]) {
+    for (to, &from) in vectors.iter_mut().zip(numbers) {
+        *to = Meaning::Directions.vector(from);
     }
 }
 

@@ -123,14 +123,8 @@ impl NullaryFnOnce for Block<'_> {
     fn call(self) {
         // The offsets are stored coordinate by coordinate, so that the compiler can use vector instructions.
         let mut offsets = [[[0.0; BLOCK]; 3]; 3];
-        for (index, corners) in self.triangles.iter().enumerate().take(BLOCK) {
-            for (offsets, &corner) in offsets.iter_mut().zip(corners) {
-                let offset = self.places.at(corner) - self.observer;
-                offsets[0][index] = offset.x;
-                offsets[1][index] = offset.y;
-                offsets[2][index] = offset.z;
-            }
-        }
+        self.places
+            .write_offsets(self.triangles, self.observer, &mut offsets);
         for (index, known) in self.known.iter_mut().enumerate() {
             let corner = |corner: usize| DVec3 {
                 x: offsets[corner][0][index],
