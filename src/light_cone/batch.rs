@@ -23,6 +23,20 @@ pub(crate) struct Batch<'a> {
     pub(crate) normals: Option<(&'a [DVec3], &'a mut [DVec3])>,
 }
 
+impl Batch<'_> {
+    fn check(&self) {
+        assert_eq!(self.rest.len(), self.seen.len(), "a place for each point");
+        if let Some((rest, seen)) = &self.normals {
+            let lengths = (rest.len(), seen.len());
+            assert_eq!(
+                lengths,
+                (self.rest.len(), self.rest.len()),
+                "one normal for each point"
+            );
+        }
+    }
+}
+
 impl View {
     /// Maps all points of a batch. The results equal those of [`View::seen_position`] and [`View::seen_normal`], bit
     /// for bit, unless a coordinate other than zero is below `1e-250`, where products lose digits.
@@ -31,16 +45,21 @@ impl View {
     ///
     /// If the slices of the batch do not have the same length.
     pub(crate) fn see(&self, batch: Batch<'_>) -> Extremes {
-        assert_eq!(batch.rest.len(), batch.seen.len(), "a place for each point");
-        if let Some((rest, seen)) = &batch.normals {
-            let lengths = (rest.len(), seen.len());
-            assert_eq!(
-                lengths,
-                (batch.rest.len(), batch.rest.len()),
-                "one normal for each point"
-            );
-        }
-        self.see_by_blocks::<true>(batch)
+        batch.check();
+        self.see_by_blocks::<true>(batch, true)
+    }
+
+    /// Does the same for whoever knows the extremes.
+    ///
+    /// # Panics
+    ///
+    /// As [`View::see`].
+    pub(crate) fn see_again(&self, batch: Batch<'_>) {
+        batch.check();
+        match batch.normals.is_some() {
+            true => self.see_by_blocks::<true>(batch, false),
+            false => self.see_by_blocks::<false>(batch, false),
+        };
     }
 
     /// Writes to `seen` where all points of `positions_rest` are seen, in the observer's frame. It does the same as
@@ -56,15 +75,16 @@ impl View {
     /// If `seen` and `positions_rest` do not have the same length, as in [`slice::copy_from_slice`].
     pub fn seen_positions(&self, positions_rest: &[DVec3], seen: &mut [DVec3]) {
         assert_eq!(positions_rest.len(), seen.len(), "a place for each point");
-        self.see_by_blocks::<false>(Batch {
+        let batch = Batch {
             rest: positions_rest,
             seen,
             normals: None,
-        });
+        };
+        self.see_by_blocks::<false>(batch, false);
     }
 
-    /// Without `ALL` only the positions are computed, and no extremes.
-    fn see_by_blocks<const ALL: bool>(&self, batch: Batch<'_>) -> Extremes {
+    /// Without `ALL` only the positions are computed; the extremes have a meaning `with_extremes` and `ALL`.
+    fn see_by_blocks<const ALL: bool>(&self, batch: Batch<'_>, with_extremes: bool) -> Extremes {
         let Some(safe_map) = self.map().safe_range_map() else {
             return self.see_one_by_one(batch);
         };
@@ -72,6 +92,7 @@ impl View {
             view: self,
             safe_map,
             batch,
+            with_extremes,
         };
         match Arch::new() {
             // A processor without fused multiply-add instructions would call a function for each fused product.
@@ -107,6 +128,7 @@ struct Blocks<'a, const ALL: bool> {
     view: &'a View,
     safe_map: &'a SafeRangeMap,
     batch: Batch<'a>,
+    with_extremes: bool,
 }
 
 impl<const ALL: bool> NullaryFnOnce for Blocks<'_, ALL> {
@@ -138,6 +160,7 @@ impl<const ALL: bool> Blocks<'_, ALL> {
             block: Block::ZERO,
             of_blocks: Accumulated::new(),
             of_others: Extremes::NONE,
+            with_extremes: self.with_extremes,
         };
         let mut normals = normals_rest.iter().zip(normals_seen);
         for (rest, seen) in rest.iter().zip(seen) {
@@ -171,6 +194,7 @@ struct Work<'a, const ALL: bool> {
     block: Block,
     of_blocks: Accumulated,
     of_others: Extremes,
+    with_extremes: bool,
 }
 
 impl<const ALL: bool> Work<'_, ALL> {
@@ -193,7 +217,7 @@ impl<const ALL: bool> Work<'_, ALL> {
             return;
         }
         block.position.store(seen);
-        if ALL {
+        if ALL && self.with_extremes {
             self.of_blocks.add(block);
         }
         if let Some((rest, seen)) = normals {

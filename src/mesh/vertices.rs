@@ -19,7 +19,7 @@ pub(crate) const MANY_VERTICES: usize = 1 << 18;
 
 /// Number of vertices that are computed at a time: few enough for the cache of a core. Pieces that begin at multiples of it
 /// are the same however a mesh is cut into them.
-pub(crate) const VERTICES_AT_ONCE: usize = 1024;
+pub(crate) const VERTICES_AT_ONCE: usize = 256;
 
 /// Writes the positions of the vertices from a given number on, and their normals where they are asked for.
 pub(crate) type Compute = dyn Fn(usize, &mut [DVec3], Option<&mut [DVec3]>) + Send + Sync;

@@ -6,6 +6,10 @@ use rayon::prelude::*;
 use crate::light_cone::{Batch, Extremes, ModelView, View};
 use crate::mesh::{Extent, MANY_VERTICES, Mesh, VALUES_PER_JOB, VERTICES_AT_ONCE};
 
+/// Number of vertices whose extremes are found together. It is a multiple of [`VERTICES_AT_ONCE`], and constant: which of 0
+/// and -0 is less depends on it.
+const VERTICES_IN_BATCH: usize = 1024;
+
 /// A mesh in the observer's frame, and the extremes of its vertices.
 #[derive(Clone, Debug)]
 pub(super) struct MappedMesh {
@@ -45,13 +49,13 @@ impl MappedMesh {
             .map(|job| {
                 let first = job * VALUES_PER_JOB;
                 let end = vertices.min(first + VALUES_PER_JOB);
-                let mut at_rest = [DVec3::ZERO; VERTICES_AT_ONCE];
-                let mut seen = [DVec3::ZERO; VERTICES_AT_ONCE];
+                let mut at_rest = [DVec3::ZERO; VERTICES_IN_BATCH];
+                let mut seen = [DVec3::ZERO; VERTICES_IN_BATCH];
                 let nothing = (Extremes::NONE, None);
-                (first..end)
-                    .step_by(VERTICES_AT_ONCE)
-                    .fold(nothing, |(extremes, extent), first| {
-                        let count = VERTICES_AT_ONCE.min(end - first);
+                (first..end).step_by(VERTICES_IN_BATCH).fold(
+                    nothing,
+                    |(extremes, extent), first| {
+                        let count = VERTICES_IN_BATCH.min(end - first);
                         let (at_rest, seen) = (&mut at_rest[..count], &mut seen[..count]);
                         rest.read_vertices(first, at_rest, None);
                         let found = view.see(Batch {
@@ -60,7 +64,8 @@ impl MappedMesh {
                             normals: None,
                         });
                         (extremes.and(found), Extent::around(extent, seen))
-                    })
+                    },
+                )
             })
             .collect();
         let (extremes, extents): (Vec<_>, Vec<_>) = found.into_iter().unzip();
@@ -109,7 +114,7 @@ fn see_piece(
         let places = &mut places[..seen.len()];
         let directions = &mut directions[..seen.len()];
         rest.read_vertices(first, places, Some(&mut *directions));
-        view.see(Batch {
+        view.see_again(Batch {
             rest: places,
             seen,
             normals: Some((directions, seen_normals)),
@@ -130,24 +135,24 @@ fn places(view: &View, rest: &Mesh) -> (Vec<DVec3>, Vec<DVec3>, Extremes) {
             normals: directions.map(|rest| (&rest[part], normals)),
         })
     };
-    if vertices <= VERTICES_AT_ONCE {
+    if vertices <= VERTICES_IN_BATCH {
         let (mut positions, mut normals) =
             (vec![DVec3::ZERO; vertices], vec![DVec3::ZERO; vertices]);
         let extremes = see(0, &mut positions, &mut normals);
         return (positions, normals, extremes);
     }
     // Each array has a known index in the result, so all threads write directly to the result's memory.
-    let jobs = (0..vertices.div_ceil(VERTICES_AT_ONCE)).into_par_iter();
+    let jobs = (0..vertices.div_ceil(VERTICES_IN_BATCH)).into_par_iter();
     let arrays = jobs.map(|job| {
-        let first = job * VERTICES_AT_ONCE;
-        let count = VERTICES_AT_ONCE.min(vertices - first);
-        let mut positions = [DVec3::ZERO; VERTICES_AT_ONCE];
-        let mut normals = [DVec3::ZERO; VERTICES_AT_ONCE];
+        let first = job * VERTICES_IN_BATCH;
+        let count = VERTICES_IN_BATCH.min(vertices - first);
+        let mut positions = [DVec3::ZERO; VERTICES_IN_BATCH];
+        let mut normals = [DVec3::ZERO; VERTICES_IN_BATCH];
         let extremes = see(first, &mut positions[..count], &mut normals[..count]);
         (extremes, (positions, normals))
     });
     let (extremes, (positions, normals)): (Vec<_>, (Vec<_>, Vec<_>)) = arrays.unzip();
-    let flattened = |arrays: Vec<[DVec3; VERTICES_AT_ONCE]>| {
+    let flattened = |arrays: Vec<[DVec3; VERTICES_IN_BATCH]>| {
         let mut vectors = arrays.into_flattened();
         vectors.truncate(vertices);
         vectors

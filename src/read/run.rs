@@ -9,6 +9,8 @@ use super::bytes::Bytes;
 
 /// Elements that a thread takes at a time: enough to outweigh a read, and still at hand when they are decoded.
 const JOB: usize = 1024;
+/// The same of elements that are only copied.
+const JOB_OF_WORDS: usize = 4096;
 
 /// Where the elements are; all of them are there.
 pub(super) struct Run<'a> {
@@ -34,7 +36,7 @@ impl Run<'_> {
         }
         if self.count <= JOB {
             let mut buffer = vec![];
-            let elements = self.elements(0, &mut buffer)?;
+            let elements = self.elements(0, JOB, &mut buffer)?;
             return Ok(elements.map(make).collect());
         }
         let failure = OnceLock::new();
@@ -42,7 +44,7 @@ impl Run<'_> {
         // Arrays have a known place in the result, so that nothing has to be put together afterwards.
         let pieces = jobs.map_init(Vec::new, |buffer, job| {
             let mut piece = [T::default(); JOB];
-            match self.elements(job * JOB, buffer) {
+            match self.elements(job * JOB, JOB, buffer) {
                 Ok(elements) => {
                     for (value, element) in piece.iter_mut().zip(elements) {
                         *value = make(element);
@@ -76,16 +78,21 @@ impl Run<'_> {
             if self.count == 0 {
                 return Ok(true);
             }
+            let first = job * JOB_OF_WORDS;
             let mut are_sound = true;
             if self.stride == self.size {
-                let (words, _) = self.bytes_of(job * JOB, buffer)?.as_chunks();
+                let (words, _) = self.bytes_of(first, JOB_OF_WORDS, buffer)?.as_chunks();
                 let (elements, _) = words.as_chunks();
                 for (value, words) in values.iter_mut().zip(elements) {
                     are_sound &= put(value, words);
                 }
                 return Ok(are_sound);
             }
-            for (value, bytes) in values.iter_mut().zip(self.elements(job * JOB, buffer)?) {
+            for (value, bytes) in
+                values
+                    .iter_mut()
+                    .zip(self.elements(first, JOB_OF_WORDS, buffer)?)
+            {
                 let (words, _) = bytes.as_chunks();
                 let (elements, _) = words.as_chunks();
                 are_sound &= put(value, &elements[0]);
@@ -94,34 +101,36 @@ impl Run<'_> {
         };
         // Zeros come with the memory of them, which then is filled where it is.
         let mut values = vec![[T::default(); WORDS]; self.count];
-        if self.count <= JOB {
+        if self.count <= JOB_OF_WORDS {
             let are_sound = fill(&mut values, 0, &mut vec![])?;
             return Ok((values, are_sound));
         }
-        let jobs = values.par_chunks_mut(JOB).enumerate();
+        let jobs = values.par_chunks_mut(JOB_OF_WORDS).enumerate();
         let filled = jobs.map_init(Vec::new, |buffer, (job, values)| fill(values, job, buffer));
         // Of several errors any will do.
         let are_sound = filled.try_reduce(|| true, |one, other| Ok(one & other))?;
         Ok((values, are_sound))
     }
 
-    /// The bytes of the elements of a job that starts with the element `first`.
+    /// The bytes of each of the elements from number `first` on, `most` at most.
     fn elements<'b>(
         &'b self,
         first: usize,
+        most: usize,
         buffer: &'b mut Vec<u8>,
     ) -> Result<impl Iterator<Item = &'b [u8]>, ReadError> {
-        let elements = self.bytes_of(first, buffer)?.chunks(self.stride);
+        let elements = self.bytes_of(first, most, buffer)?.chunks(self.stride);
         Ok(elements.map(|element| &element[..self.size]))
     }
 
-    /// The bytes from the first to the last of these elements.
+    /// The bytes from the first to the last of these.
     fn bytes_of<'b>(
         &'b self,
         first: usize,
+        most: usize,
         buffer: &'b mut Vec<u8>,
     ) -> Result<&'b [u8], ReadError> {
-        let count = JOB.min(self.count - first);
+        let count = most.min(self.count - first);
         let start = self.start + first * self.stride;
         let end = start + (count - 1) * self.stride + self.size;
         self.bytes.part(start..end, buffer)
