@@ -363,14 +363,33 @@ impl Mesh {
 
     /// A mesh of data that is known to fit: indices in range, one value a vertex, all finite.
     pub(crate) fn from_parts(
-        positions: impl Into<Vectors>,
+        positions: Vec<DVec3>,
         triangles: Vec<[u32; 3]>,
-        normals: Option<Vectors>,
+        normals: Option<Vec<DVec3>>,
         tangents: Option<Vec<DVec4>>,
         texture_coordinates: Vec<Vec<Vec2>>,
         colors: Option<Vec<Vec4>>,
     ) -> Self {
-        let positions = positions.into();
+        Self {
+            tangents: tangents.map(Into::into),
+            ..Self::from_vectors(
+                positions.into(),
+                triangles,
+                normals.map(Into::into),
+                texture_coordinates,
+                colors,
+            )
+        }
+    }
+
+    /// The same of vectors of any precision, without tangents.
+    pub(crate) fn from_vectors(
+        positions: Vectors,
+        triangles: Vec<[u32; 3]>,
+        normals: Option<Vectors>,
+        texture_coordinates: Vec<Vec<Vec2>>,
+        colors: Option<Vec<Vec4>>,
+    ) -> Self {
         debug_assert!(
             triangles
                 .iter()
@@ -380,11 +399,9 @@ impl Mesh {
         Self {
             vertices: Vertices::held(positions, normals),
             triangles: Arc::new(triangles.into()),
-            tangents: tangents.map(Into::into),
             texture_coordinates: texture_coordinates.into_iter().map(Into::into).collect(),
             colors: colors.map(Into::into),
-            extent: Remembered::default(),
-            maker: Remembered::default(),
+            ..Self::default()
         }
     }
 
@@ -707,7 +724,7 @@ mod tests {
         let own = Mesh::from_parts(
             positions,
             listed.collect(),
-            Some(normals.into()),
+            Some(normals),
             None,
             vec![],
             None,

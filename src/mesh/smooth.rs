@@ -89,11 +89,10 @@ impl Mesh {
         let sets = sets.map(|set| vertices.iter().map(|i| set[picked(i)]).collect());
         let sets = sets.collect();
         let positions = self.shared_positions().picked(&vertices);
-        Ok(Self::from_parts(
+        Ok(Self::from_vectors(
             positions,
             numbers,
             Some(normals.into()),
-            None,
             sets,
             colors,
         ))

@@ -125,7 +125,7 @@ impl StepTolerance {
         if self.deviation > 0.0 {
             let mesh = parts[0].1.mesh();
             let facet = |index| shrunk(mesh.corners_of(index), each);
-            let count = mesh.triangle_count();
+            let count = mesh.triangles().len();
             curvature = self.deviation * largest_stretch(&self.view, count, facet);
         }
         let rounding = self.rounding_of_all(parts, seen);
@@ -209,7 +209,7 @@ impl StepTolerance {
     pub(super) fn max_deviation(&self, mesh: &Mesh, seen: &[MappedMesh]) -> f64 {
         let rounding = self.rounding(mesh, &seen[0].extremes, self.box_around(seen), 0.0);
         let left = (self.aimed_length - rounding).max(0.5 * self.aimed_length);
-        let count = mesh.triangle_count();
+        let count = mesh.triangles().len();
         let max_deviation = match (self.aimed.unit(), self.aimed.number()) {
             (Unit::Degrees, degrees) => {
                 let nearest = |index| {

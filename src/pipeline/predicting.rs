@@ -42,7 +42,7 @@ type Facet = (f64, [DVec3; 3]);
 pub(super) fn predict(mut plan: Plan<'_>, wanted: SurfaceOptions, weights: &[f64]) -> Predicted {
     let facets = plan.shape.as_ref().map_or(0, Shape::triangle_count);
     let (draft, each) = if facets > MAX_FACETS_MADE {
-        let as_placed = plan.placed_object.parts[0].1.mesh().triangle_count();
+        let as_placed = plan.placed_object.parts[0].1.mesh().triangles().len();
         let each = facets as f64 / as_placed as f64;
         (plan.draft_as_placed(each), each)
     } else {

@@ -54,8 +54,8 @@ pub(super) fn make_together<'a>(
             let measured = Measured {
                 gap: largest_gap(mesh, observer),
                 counts: Counts {
-                    triangles_in: before.triangle_count(),
-                    triangles_out: mesh.triangle_count(),
+                    triangles_in: before.triangles().len(),
+                    triangles_out: mesh.triangles().len(),
                     minimum_triangles: minimum.minimum_triangles,
                 },
             };

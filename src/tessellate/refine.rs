@@ -266,7 +266,7 @@ fn interpolated(mesh: &Mesh, origins: &[Origin], triangles: Vec<[u32; 3]>) -> Me
     Mesh::from_parts(
         positions,
         triangles,
-        normals.map(Into::into),
+        normals,
         tangents,
         texture_coordinates.collect(),
         colors,

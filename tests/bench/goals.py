@@ -18,6 +18,7 @@ import tempfile
 import time
 
 MILLIONS = 5
+BARE_MILLIONS = 10
 ROUNDS = 7
 STEPS = 100
 ENGINE_PARTS, ENGINE_TRIANGLES = 115, 75_730
@@ -121,6 +122,27 @@ def large_mesh(binary: str, directory: str, output: str) -> None:
     print(f"  against beta = 0: {ours[0] / found['beta = 0'][0]:.3f} times its time")
 
 
+def bare_mesh(binary: str, directory: str, output: str) -> None:
+    """A wavy sheet of positions and triangles alone: its normals are those of flat facets, smooth ones, or none."""
+    import numpy
+    import trimesh
+
+    side = round((BARE_MILLIONS * 1e6 / 2) ** 0.5) + 1
+    x, z = numpy.meshgrid(numpy.linspace(-2, 2, side), numpy.linspace(-8, -4, side), indexing="ij")
+    points = numpy.stack([x, 0.2 * numpy.sin(3 * x) * numpy.cos(2 * z), z], axis=-1).reshape(-1, 3)
+    index = numpy.arange(side * side).reshape(side, side)
+    a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]
+    faces = numpy.concatenate([numpy.stack([a, b, c], axis=-1), numpy.stack([a, c, d], axis=-1)]).reshape(-1, 3)
+    source = os.path.join(directory, "bare.glb")
+    trimesh.Trimesh(points, faces, process=False).export(source, include_normals=False)
+    export = [binary, "export", source, "--no-subdivide", "-q", "--beta", str(BETA)]
+    ways = ("source", "smooth", "none")
+    found = medians({f"--normals {way}": [*export, "--normals", way, "-o", output] for way in ways}, rounds=3)
+    print(f"{len(faces)} triangles without normals, {os.path.getsize(source) / 1e6:.0f} MB, GLB to GLB, medians of 3")
+    for name, (seconds, memory) in found.items():
+        print(f"  {name:16} {seconds:8.3f} s {memory:8.0f} MB")
+
+
 def engine(binary: str, source: str, output: str) -> None:
     steps = {"1 step": "0", "2 steps": "0,1", f"{STEPS} steps": f"-6..6/{STEPS}"}
     export = [binary, "export", source, "--beta", str(BETA), "-q"]
@@ -145,6 +167,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory(dir=os.path.dirname(os.path.abspath(binary))) as directory:
         output = os.path.join(directory, "out.glb")
         large_mesh(binary, directory, output)
+        bare_mesh(binary, directory, output)
         source = os.path.join(directory, "engine.glb")
         if len(sys.argv) > 2:
             shutil.copy(sys.argv[2], source)

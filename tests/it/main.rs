@@ -65,6 +65,7 @@ mod export {
     mod camera;
     mod hard_properties;
     mod jobs;
+    mod large;
     mod materials;
     mod seams;
 }

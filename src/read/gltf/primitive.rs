@@ -138,7 +138,7 @@ pub(super) fn read_primitive(
     }
     let mut mesh = if shape.is_sound {
         let (positions, normals) = (shape.positions, shape.normals);
-        Mesh::from_parts(positions, triangles.corners, normals, None, vec![], None)
+        Mesh::from_vectors(positions, triangles.corners, normals, vec![], None)
     } else {
         let positions = shape.positions.into_doubles();
         let mesh = Mesh::new(positions, triangles.corners).map_err(wrong)?;

@@ -27,3 +27,12 @@ pub(crate) fn alone(name: &str, test: impl FnOnce()) {
     let passed = output.status.success() && stdout.contains("test result: ok. 1 passed");
     assert!(passed, "{name}, in a process of its own:\n{stdout}{stderr}");
 }
+
+/// The most memory that this process has had, in bytes.
+#[cfg(target_os = "linux")]
+pub(crate) fn peak_memory() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap();
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"));
+    let kilobytes = line.and_then(|line| line.split_whitespace().nth(1));
+    1000 * kilobytes.unwrap().parse::<u64>().unwrap()
+}

@@ -210,21 +210,12 @@ fn a_film_that_is_not_finished_is_not_there() {
     assert!(matches!(refused, FilmError::NeedsFile(FilmFormat::WebP)));
 }
 
-/// The most memory that this process has had, in bytes.
-#[cfg(target_os = "linux")]
-fn peak_memory() -> u64 {
-    let status = fs::read_to_string("/proc/self/status").unwrap();
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"));
-    let kilobytes = line.and_then(|line| line.split_whitespace().nth(1));
-    1000 * kilobytes.unwrap().parse::<u64>().unwrap()
-}
-
 /// 1000 frames of noise are 43 MB, as files too.
 #[cfg(target_os = "linux")]
 #[test]
 fn memory_does_not_grow_with_the_number_of_frames() {
     use crate::common::Random;
-    use crate::common::alone::alone;
+    use crate::common::alone::{alone, peak_memory};
     alone(
         "render::films::memory_does_not_grow_with_the_number_of_frames",
         || {
