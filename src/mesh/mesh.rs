@@ -5,13 +5,13 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{DAffine3, DMat3, DVec3, DVec4, Vec2, Vec4};
 use rayon::prelude::*;
-use thiserror::Error;
 
+use super::check::{MeshError, check, check_triangles};
 use super::extent::Extent;
 use super::triangles::Triangles;
+use super::values::{VALUES_PER_JOB, change, change_shared, flat_normal, pick, unit_or_zero};
 use super::vectors::{Places, Vectors};
 use super::vertices::{Compute, MANY_VERTICES, VERTICES_AT_ONCE, Vertices};
-use crate::spacetime::unit;
 
 /// A triangle mesh: positions, indexed triangles, and attributes of its vertices.
 ///
@@ -32,45 +32,6 @@ pub struct Mesh {
     extent: Remembered<Option<Extent>>,
     /// A value that determines positions and triangles, as long as they are as it made them.
     maker: Remembered<Arc<dyn Any + Send + Sync>>,
-}
-
-/// Why data does not make a [`Mesh`].
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum MeshError {
-    /// More vertices than a `u32` index can tell apart.
-    #[error("{0} vertices, expected at most {max}", max = u32::MAX)]
-    TooManyVertices(usize),
-    /// A triangle names a vertex that is not there.
-    #[error("triangle {triangle} uses vertex {index}, expected an index below {vertices}")]
-    Index {
-        /// Which triangle, from 0.
-        triangle: usize,
-        /// What it says.
-        index: u32,
-        /// How many vertices there are.
-        vertices: usize,
-    },
-    /// An attribute with too many or too few values.
-    #[error("{attribute} has {found} values, expected one for each of {vertices} vertices")]
-    Count {
-        /// Which attribute.
-        attribute: &'static str,
-        /// How many values it has.
-        found: usize,
-        /// How many vertices there are.
-        vertices: usize,
-    },
-    /// NaN or infinity.
-    #[error("{attribute} of vertex {vertex} is {value}, expected finite numbers")]
-    NotFinite {
-        /// Which attribute.
-        attribute: &'static str,
-        /// Which vertex, from 0.
-        vertex: usize,
-        /// The offending value.
-        value: String,
-    },
 }
 
 impl Mesh {
@@ -521,11 +482,6 @@ impl PartialEq for Mesh {
     }
 }
 
-/// The normal of a flat triangle. One without area has none; any unit vector keeps files valid.
-pub(super) fn flat_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    unit((b - a).cross(c - a)).unwrap_or(DVec3::Y)
-}
-
 /// Something known of a mesh that is no part of what it is.
 #[derive(Clone, Debug)]
 struct Remembered<T>(OnceLock<T>);
@@ -533,99 +489,6 @@ struct Remembered<T>(OnceLock<T>);
 impl<T> Default for Remembered<T> {
     fn default() -> Self {
         Self(OnceLock::new())
-    }
-}
-
-/// Values a thread takes at a time: enough to outweigh handing them over.
-pub(crate) const VALUES_PER_JOB: usize = 4096;
-
-fn pick<T: Copy + Send + Sync>(values: &[T], indices: &[u32]) -> Arc<Vec<T>> {
-    let jobs = indices.par_iter().with_min_len(VALUES_PER_JOB);
-    let picked: Vec<T> = jobs.map(|&index| values[index as usize]).collect();
-    picked.into()
-}
-
-/// Makes something else of every value.
-pub(super) fn change<T: Copy + Send + Sync>(values: &mut [T], new: impl Fn(T) -> T + Sync) {
-    let jobs = values.par_iter_mut().with_min_len(VALUES_PER_JOB);
-    jobs.for_each(|value| *value = new(*value));
-}
-
-/// Makes something else of every value; those who share the values keep them as they are.
-fn change_shared<T: Copy + Send + Sync>(values: &mut Arc<Vec<T>>, new: impl Fn(T) -> T + Sync) {
-    match Arc::get_mut(values) {
-        Some(values) => change(values, new),
-        None => {
-            let jobs = values.par_iter().with_min_len(VALUES_PER_JOB);
-            let changed: Vec<T> = jobs.map(|&value| new(value)).collect();
-            *values = changed.into();
-        }
-    }
-}
-
-/// A vector brought to unit length, or zero where there is none.
-///
-/// Where nothing overflows and nothing is lost below the smallest numbers, a root does without the detour by powers
-/// of two and is as good.
-#[inline]
-pub(crate) fn unit_or_zero(vector: DVec3) -> DVec3 {
-    const ORDINARY: std::ops::Range<f64> = 1e-100..1e100;
-    let square = vector.length_squared();
-    match ORDINARY.contains(&square) {
-        true => vector * square.sqrt().recip(),
-        false => unit(vector).unwrap_or(DVec3::ZERO),
-    }
-}
-
-/// Whether triangles use nothing but the vertices that there are.
-pub(crate) fn check_triangles(triangles: &[[u32; 3]], vertices: usize) -> Result<(), MeshError> {
-    if vertices > u32::MAX as usize {
-        return Err(MeshError::TooManyVertices(vertices));
-    }
-    let is_wrong = |corners: &[u32; 3]| corners.iter().any(|&i| i as usize >= vertices);
-    let Some(triangle) = first_of(triangles, is_wrong) else {
-        return Ok(());
-    };
-    let mut corners = triangles[triangle].into_iter();
-    let index = corners.find(|&i| i as usize >= vertices);
-    Err(MeshError::Index {
-        triangle,
-        index: index.expect("one of them is"),
-        vertices,
-    })
-}
-
-/// The first value that something holds of. Nearly always there is none, and no number is looked for where there is none.
-fn first_of<T: Sync>(values: &[T], holds: impl Fn(&T) -> bool + Sync) -> Option<usize> {
-    let jobs = values.par_chunks(VALUES_PER_JOB);
-    let holds_of_any = |job: &[T]| job.iter().fold(false, |any, value| any | holds(value));
-    let job = jobs.position_first(holds_of_any)?;
-    values[job * VALUES_PER_JOB..]
-        .iter()
-        .position(holds)
-        .map(|index| job * VALUES_PER_JOB + index)
-}
-
-fn check<T: std::fmt::Display + Sync>(
-    attribute: &'static str,
-    values: &[T],
-    vertices: usize,
-    is_finite: impl Fn(&T) -> bool + Sync,
-) -> Result<(), MeshError> {
-    if values.len() != vertices {
-        return Err(MeshError::Count {
-            attribute,
-            found: values.len(),
-            vertices,
-        });
-    }
-    match first_of(values, |value| !is_finite(value)) {
-        Some(vertex) => Err(MeshError::NotFinite {
-            attribute,
-            vertex,
-            value: values[vertex].to_string(),
-        }),
-        None => Ok(()),
     }
 }
 
@@ -640,24 +503,6 @@ mod tests {
         let triangles = (0..9_998).map(|i| [i, i + 1, i + 2]).collect();
         let mesh = Mesh::new(positions, triangles).unwrap();
         mesh.with_normals(normals).unwrap()
-    }
-
-    /// In units of rounding, half of `EPSILON`: the square of the length is off by at most 3, its root by 2.5, the
-    /// reciprocal by 3.5, the result by 4.5; the long way has one division more and takes the length of its
-    /// result: 5.5. The length found of a unit vector is off by another 2.5.
-    #[test]
-    fn the_short_way_to_a_unit_vector_is_as_good_as_the_long_one() {
-        for i in 0..100_000u32 {
-            let angle = f64::from(i) * 0.618;
-            let scale = 10f64.powi((i % 120) as i32 - 60);
-            let vector = DVec3::new(angle.sin(), (3.1 * angle).cos(), (7.7 * angle).sin()) * scale;
-            let (short, long) = (unit_or_zero(vector), unit(vector).unwrap());
-            assert!((short - long).abs().max_element() <= 5.0 * f64::EPSILON);
-            assert!((short.length() - 1.0).abs() <= 3.5 * f64::EPSILON);
-        }
-        assert_eq!(unit_or_zero(DVec3::ZERO), DVec3::ZERO);
-        assert_eq!(unit_or_zero(DVec3::X * 1e-310), DVec3::X);
-        assert_eq!(unit_or_zero(DVec3::NEG_Y * 1e300), DVec3::NEG_Y);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
-use super::mesh::{VALUES_PER_JOB, change, unit_or_zero};
+use super::values::{VALUES_PER_JOB, change, unit_or_zero};
 
 /// One vector for each vertex.
 #[derive(Clone, Debug)]

@@ -9,8 +9,8 @@ use std::sync::{Arc, OnceLock};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::mesh::flat_normal;
 use super::triangles::Triangles;
+use super::values::flat_normal;
 use super::vectors::{Places, Vectors};
 
 /// A mesh with more vertices than this computes them where they are wanted, if it can. Of a smaller one they take little
