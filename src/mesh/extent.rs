@@ -25,8 +25,12 @@ impl Extent {
     /// That of positions whose order does not matter: all are finite, and neither end of any axis is at a zero, of which
     /// there are two.
     fn at_once(positions: &[DVec3]) -> Option<Self> {
-        let &first = positions.first()?;
-        let (low, high) = Arch::new().dispatch(Ends { positions, first });
+        let [low, high] = ends(positions)?;
+        Self::of_ends(low, high)
+    }
+
+    /// That of positions between these ends, of which nothing is known if a number is missing or zero.
+    pub(super) fn of_ends(low: DVec3, high: DVec3) -> Option<Self> {
         // What is not a number is neither less nor more than anything, and shows in no end.
         let is_plain = |end: DVec3| end.is_finite() && end.to_array().iter().all(|&x| x != 0.0);
         (is_plain(low) && is_plain(high)).then_some(Self {
@@ -54,56 +58,128 @@ impl Extent {
     }
 }
 
-/// The lowest and the highest of each coordinate, several in one instruction where the processor can; no numbers where one
-/// of the coordinates is none.
-struct Ends<'a> {
-    positions: &'a [DVec3],
-    first: DVec3,
+/// The lowest and the highest of each coordinate; no numbers where one of the coordinates is none. `None` of no vectors.
+pub(super) fn ends<V: Triple>(vectors: &[V]) -> Option<[V; 2]> {
+    let &first = vectors.first()?;
+    Some(Arch::new().dispatch(Ends { vectors, first }))
 }
 
-/// Number of positions that are compared together.
-const LANES: usize = 8;
+/// Three numbers of either precision.
+pub(super) trait Triple: Copy {
+    /// The lower one of each.
+    fn lower(self, other: Self) -> Self;
+    /// The higher one of each.
+    fn higher(self, other: Self) -> Self;
+    /// Zero if all are finite, added to something.
+    fn rest_and(self, sum: Self) -> Self;
+    fn sum(self, other: Self) -> Self;
+    const ZERO: Self;
+}
 
-impl NullaryFnOnce for Ends<'_> {
-    type Output = (DVec3, DVec3);
+impl Triple for DVec3 {
+    const ZERO: Self = Self::ZERO;
 
     #[inline(always)]
-    fn call(self) -> (DVec3, DVec3) {
-        let (mut low, mut high) = ([self.first; LANES], [self.first; LANES]);
-        // Zero as long as all are finite.
-        let mut rest = [DVec3::ZERO; LANES];
-        let (blocks, last) = self.positions.as_chunks::<LANES>();
-        for block in blocks {
-            for lane in 0..LANES {
-                let position = block[lane];
-                low[lane] = lower(position, low[lane]);
-                high[lane] = -lower(-position, -high[lane]);
-                rest[lane] += position - position;
-            }
-        }
-        for (lane, &position) in last.iter().enumerate() {
-            low[lane] = lower(position, low[lane]);
-            high[lane] = -lower(-position, -high[lane]);
-            rest[lane] += position - position;
-        }
-        let (mut lowest, mut highest, mut all) = (low[0], high[0], rest[0]);
-        for lane in 1..LANES {
-            lowest = lower(low[lane], lowest);
-            highest = -lower(-high[lane], -highest);
-            all += rest[lane];
-        }
-        (lowest + all, highest + all)
+    fn lower(self, other: Self) -> Self {
+        let [a, b] = [self, other].map(|vector| vector.to_array());
+        Self::from_array(std::array::from_fn(
+            |i| if a[i] < b[i] { a[i] } else { b[i] },
+        ))
+    }
+
+    #[inline(always)]
+    fn higher(self, other: Self) -> Self {
+        let [a, b] = [self, other].map(|vector| vector.to_array());
+        Self::from_array(std::array::from_fn(
+            |i| if a[i] > b[i] { a[i] } else { b[i] },
+        ))
+    }
+
+    #[inline(always)]
+    fn rest_and(self, sum: Self) -> Self {
+        sum + (self - self)
+    }
+
+    #[inline(always)]
+    fn sum(self, other: Self) -> Self {
+        self + other
     }
 }
 
-#[inline(always)]
-fn lower(one: DVec3, other: DVec3) -> DVec3 {
-    let lower = |one: f64, other: f64| if one < other { one } else { other };
-    DVec3::new(
-        lower(one.x, other.x),
-        lower(one.y, other.y),
-        lower(one.z, other.z),
-    )
+impl Triple for [f32; 3] {
+    const ZERO: Self = [0.0; 3];
+
+    #[inline(always)]
+    fn lower(self, other: Self) -> Self {
+        std::array::from_fn(|i| {
+            if self[i] < other[i] {
+                self[i]
+            } else {
+                other[i]
+            }
+        })
+    }
+
+    #[inline(always)]
+    fn higher(self, other: Self) -> Self {
+        std::array::from_fn(|i| {
+            if self[i] > other[i] {
+                self[i]
+            } else {
+                other[i]
+            }
+        })
+    }
+
+    #[inline(always)]
+    fn rest_and(self, sum: Self) -> Self {
+        std::array::from_fn(|i| sum[i] + (self[i] - self[i]))
+    }
+
+    #[inline(always)]
+    fn sum(self, other: Self) -> Self {
+        std::array::from_fn(|i| self[i] + other[i])
+    }
+}
+
+/// The ends of vectors, several compared in one instruction where the processor can.
+struct Ends<'a, V> {
+    vectors: &'a [V],
+    first: V,
+}
+
+/// Number of vectors that are compared together.
+const LANES: usize = 8;
+
+impl<V: Triple> NullaryFnOnce for Ends<'_, V> {
+    type Output = [V; 2];
+
+    #[inline(always)]
+    fn call(self) -> [V; 2] {
+        let (mut low, mut high) = ([self.first; LANES], [self.first; LANES]);
+        // Zero as long as all are finite.
+        let mut rest = [V::ZERO; LANES];
+        let (blocks, last) = self.vectors.as_chunks::<LANES>();
+        for block in blocks {
+            for lane in 0..LANES {
+                low[lane] = block[lane].lower(low[lane]);
+                high[lane] = block[lane].higher(high[lane]);
+                rest[lane] = block[lane].rest_and(rest[lane]);
+            }
+        }
+        for (lane, &vector) in last.iter().enumerate() {
+            low[lane] = vector.lower(low[lane]);
+            high[lane] = vector.higher(high[lane]);
+            rest[lane] = vector.rest_and(rest[lane]);
+        }
+        let (mut lowest, mut highest, mut all) = (low[0], high[0], rest[0]);
+        for lane in 1..LANES {
+            lowest = low[lane].lower(lowest);
+            highest = high[lane].higher(highest);
+            all = rest[lane].sum(all);
+        }
+        [lowest.sum(all), highest.sum(all)]
+    }
 }
 
 #[cfg(test)]

@@ -259,6 +259,9 @@ impl Mesh {
     fn extent_of_job(&self, job: usize) -> Option<Extent> {
         let first = job * VALUES_PER_JOB;
         let end = self.vertex_count().min(first + VALUES_PER_JOB);
+        if let Some(extent) = self.vertices.extent_at_once(first..end) {
+            return Some(extent);
+        }
         let mut places = [DVec3::ZERO; VERTICES_AT_ONCE];
         (first..end)
             .step_by(VERTICES_AT_ONCE)

@@ -1,11 +1,13 @@
 //! One vector for each vertex, in the precision in which its source has it.
 
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use glam::{DAffine3, DMat3, DVec3};
 use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
+use super::extent::{Extent, ends};
 use super::values::{VALUES_PER_JOB, change, unit_or_zero};
 
 /// One vector for each vertex.
@@ -209,6 +211,21 @@ impl Vectors {
         }
     }
 
+    /// Where some of them are, if that is quickly told: the least of `f32`, moved, is the least of what is moved.
+    pub(super) fn extent_at_once(&self, part: Range<usize>) -> Option<Extent> {
+        let Self::Single(Singles {
+            numbers,
+            meaning: meaning @ (Meaning::Plain | Meaning::Moved(_)),
+            ..
+        }) = self
+        else {
+            return None;
+        };
+        let ends = ends(&numbers[part])?;
+        let [low, high] = ends.map(|end| meaning.vector(end));
+        Extent::of_ends(low, high)
+    }
+
     fn to_doubles(&self) -> Vec<DVec3> {
         match self {
             Self::Double(vectors) => vectors.clone(),
@@ -400,6 +417,35 @@ mod tests {
         let widened = Vectors::single(numbers).into_doubles();
         let expected = Vectors::Double(widened).into_directions();
         check(&directions, expected.as_slice());
+    }
+
+    #[test]
+    fn the_ends_of_what_is_moved_are_those_of_single_vectors() {
+        let place = |k: u16| {
+            let turn = f32::from(k) + 0.1;
+            [turn.sin(), turn.cos() - 1e-3, 1e3 * turn]
+        };
+        let numbers: Vec<[f32; 3]> = (0..1000).map(place).collect();
+        for way in [DVec3::ZERO, DVec3::new(0.1, -7.3, 1e-9), DVec3::splat(1e9)] {
+            let mut places = Arc::new(Vectors::single(numbers.clone()));
+            if way != DVec3::ZERO {
+                places.placed(&DAffine3::from_translation(way));
+            }
+            for part in [0..1000, 3..4, 500..517] {
+                let found = places.extent_at_once(part.clone()).unwrap();
+                let expected = Extent::around(None, &places.as_slice()[part]).unwrap();
+                assert_eq!((found.low, found.high), (expected.low, expected.high));
+                assert!(found.is_finite);
+            }
+        }
+        for odd in [
+            [0.0, 1.0, 1.0],
+            [f32::NAN, 1.0, 1.0],
+            [1.0, f32::INFINITY, 1.0],
+        ] {
+            let odd = Vectors::single(vec![[0.5; 3], odd, [2.0; 3]]);
+            assert!(odd.extent_at_once(0..2).is_none());
+        }
     }
 
     fn check(vectors: &Vectors, expected: &[DVec3]) {

@@ -4,11 +4,13 @@
 //! computing it again takes less time than making room for it.
 
 use std::fmt;
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::extent::Extent;
 use super::triangles::Triangles;
 use super::values::flat_normal;
 use super::vectors::{Places, Vectors};
@@ -145,6 +147,14 @@ impl Vertices {
                 }
             }
             Self::Computed(computed) => computed.read(first, places, directions),
+        }
+    }
+
+    /// Where some vertices are, if that is quickly told.
+    pub(super) fn extent_at_once(&self, part: Range<usize>) -> Option<Extent> {
+        match self {
+            Self::Held { positions, .. } => positions.extent_at_once(part),
+            Self::Computed(_) => None,
         }
     }
 

@@ -86,16 +86,16 @@ impl Document<'_> {
         Ok(elements.iter().map(|&element| make(element)).collect())
     }
 
-    /// The elements of an accessor, each of three numbers, if they are plain floats, and whether `is_sound` holds for all
+    /// The elements of an accessor, each of `N` numbers, if they are plain floats, and whether `is_sound` holds for all
     /// of them.
-    pub(super) fn singles(
+    pub(super) fn singles<const N: usize>(
         &self,
         index: Index<Accessor>,
         expected: &Expected,
         place: &str,
-        is_sound: impl Fn([f32; 3]) -> bool + Sync,
-    ) -> Result<Option<(Vec<[f32; 3]>, bool)>, ReadError> {
-        debug_assert!(expected.types.iter().any(|kind| kind.multiplicity() == 3));
+        is_sound: impl Fn([f32; N]) -> bool + Sync,
+    ) -> Result<Option<(Vec<[f32; N]>, bool)>, ReadError> {
+        debug_assert!(expected.types.iter().any(|kind| kind.multiplicity() == N));
         let accessor = &self.root.accessors[index.value()];
         if accessor.component_type.unwrap().0 != ComponentType::F32 {
             return Ok(None);

@@ -5,7 +5,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use glam::{DVec2, DVec3, DVec4, Vec4};
+use glam::{DVec2, DVec3, DVec4, Vec2, Vec4};
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
@@ -153,8 +153,7 @@ pub(super) fn read_primitive(
     let mut sets = 0;
     while let Some(index) = source.attribute(&Semantic::TexCoords(sets)) {
         let name = Semantic::TexCoords(sets).to_string();
-        let pair = |uv: [f64; 2]| DVec2::from_array(uv).as_vec2();
-        let set = source.elements(index, &TEXTURE_COORDINATE, &name, vertices, pair)?;
+        let set = source.texture_coordinates(index, &name, vertices)?;
         mesh = mesh.with_texture_coordinates(set).map_err(wrong)?;
         sets += 1;
     }
@@ -263,6 +262,25 @@ impl Source<'_> {
             .elements(index, &VECTOR, &place, DVec3::from_array)?;
         let are_sound = vectors.iter().all(|&vector| is_sound(vector));
         Ok((vectors.into(), are_sound))
+    }
+
+    /// Texture coordinates for all vertices.
+    fn texture_coordinates(
+        &self,
+        index: Index<Accessor>,
+        name: &str,
+        vertices: usize,
+    ) -> Result<Vec<Vec2>, ReadError> {
+        let place = self.check_count(index, name, vertices)?;
+        let document = self.document;
+        if let Some((pairs, _)) =
+            document.singles(index, &TEXTURE_COORDINATE, &place, |_: [f32; 2]| true)?
+        {
+            // In place: they are the same bytes.
+            return Ok(pairs.into_iter().map(Vec2::from_array).collect());
+        }
+        let pair = |uv: [f64; 2]| DVec2::from_array(uv).as_vec2();
+        document.elements(index, &TEXTURE_COORDINATE, &place, pair)
     }
 
     /// Colours for all vertices.
