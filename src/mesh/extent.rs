@@ -97,7 +97,7 @@ impl Triple for DVec3 {
 
     #[inline(always)]
     fn rest_and(self, sum: Self) -> Self {
-        sum + (self - self)
+        sum + 0.0 * self
     }
 
     #[inline(always)]
@@ -133,7 +133,7 @@ impl Triple for [f32; 3] {
 
     #[inline(always)]
     fn rest_and(self, sum: Self) -> Self {
-        std::array::from_fn(|i| sum[i] + (self[i] - self[i]))
+        std::array::from_fn(|i| sum[i] + 0.0 * self[i])
     }
 
     #[inline(always)]

@@ -23,6 +23,9 @@ pub(super) struct Expected {
     pub(super) words: &'static str,
 }
 
+/// Elements, and whether something holds for all of them.
+pub(super) type Checked<const N: usize> = (Vec<[f32; N]>, bool);
+
 /// The numbers of an accessor.
 pub(super) struct Numbers {
     /// All components, element by element.
@@ -94,7 +97,7 @@ impl Document<'_> {
         expected: &Expected,
         place: &str,
         is_sound: impl Fn([f32; N]) -> bool + Sync,
-    ) -> Result<Option<(Vec<[f32; N]>, bool)>, ReadError> {
+    ) -> Result<Option<Checked<N>>, ReadError> {
         debug_assert!(expected.types.iter().any(|kind| kind.multiplicity() == N));
         let accessor = &self.root.accessors[index.value()];
         if accessor.component_type.unwrap().0 != ComponentType::F32 {

@@ -31,8 +31,9 @@ pub(crate) fn alone(name: &str, test: impl FnOnce()) {
 /// The most memory that this process has had, in bytes.
 #[cfg(target_os = "linux")]
 pub(crate) fn peak_memory() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap();
+    let status = std::fs::read_to_string("/proc/self/status").expect("a system like Linux");
     let line = status.lines().find(|line| line.starts_with("VmHWM:"));
     let kilobytes = line.and_then(|line| line.split_whitespace().nth(1));
-    1000 * kilobytes.unwrap().parse::<u64>().unwrap()
+    let kilobytes = kilobytes.and_then(|number| number.parse::<u64>().ok());
+    1000 * kilobytes.expect("a number of kilobytes")
 }
