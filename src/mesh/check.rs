@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use super::values::VALUES_PER_JOB;
 
-/// Why data does not make a [`Mesh`].
+/// Why data does not make a [`Mesh`](super::Mesh).
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MeshError {
