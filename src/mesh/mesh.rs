@@ -9,9 +9,9 @@ use rayon::prelude::*;
 use super::check::{MeshError, check, check_triangles};
 use super::extent::Extent;
 use super::triangles::Triangles;
-use super::values::{VALUES_PER_JOB, change, change_shared, flat_normal, pick, unit_or_zero};
+use super::values::{VALUES_PER_JOB, change, change_shared, flattened, unit_or_zero};
 use super::vectors::{Places, Vectors};
-use super::vertices::{Compute, MANY_VERTICES, VERTICES_AT_ONCE, Vertices};
+use super::vertices::{Compute, VERTICES_AT_ONCE, Vertices};
 
 /// A triangle mesh: positions, indexed triangles, and attributes of its vertices.
 ///
@@ -173,9 +173,7 @@ impl Mesh {
             }
             values
         });
-        let mut values = arrays.collect::<Vec<_>>().into_flattened();
-        values.truncate(count);
-        values
+        flattened(arrays.collect(), count)
     }
 
     /// The places of the vertices, for whoever reads single ones.
@@ -369,6 +367,24 @@ impl Mesh {
         }
     }
 
+    /// A mesh of data that are known to fit, shared or not.
+    pub(super) fn from_shared(
+        vertices: Vertices,
+        triangles: Triangles,
+        tangents: Option<Arc<Vec<DVec4>>>,
+        texture_coordinates: Vec<Arc<Vec<Vec2>>>,
+        colors: Option<Arc<Vec<Vec4>>>,
+    ) -> Self {
+        Self {
+            vertices,
+            triangles: Arc::new(triangles),
+            tangents,
+            texture_coordinates,
+            colors,
+            ..Self::default()
+        }
+    }
+
     /// The same mesh with other geometry; `positions` and the rest have one value a vertex, as before.
     pub(crate) fn with_geometry(
         &self,
@@ -427,49 +443,6 @@ impl Mesh {
             maker: Remembered::default(),
             ..self
         }
-    }
-
-    /// The mesh with the normals of its flat triangles, each with three vertices of its own: what
-    /// glTF asks for where a source has no normals. Vertices in no triangle vanish.
-    ///
-    /// # Errors
-    ///
-    /// More corners than a `u32` index can tell apart.
-    pub fn with_flat_normals(self) -> Result<Self, MeshError> {
-        let count = self.triangle_count();
-        if 3 * count > u32::MAX as usize {
-            return Err(MeshError::TooManyVertices(3 * count));
-        }
-        let list = || self.triangles.as_slice().as_flattened();
-        let (positions, _) = self.vertices.into_held();
-        let vertices = match 3 * count > MANY_VERTICES {
-            true => Vertices::of_facets(positions, self.triangles.clone()),
-            false => {
-                let places = positions.places();
-                let normals = self.triangles.as_slice().iter().flat_map(|corners| {
-                    let corners = corners.map(|corner| places.at(corner));
-                    [flat_normal(corners); 3]
-                });
-                let normals: Vec<DVec3> = normals.collect();
-                Vertices::held(positions.picked(list()), Some(normals.into()))
-            }
-        };
-        Ok(Self {
-            vertices,
-            triangles: Arc::new(Triangles::in_order(count)),
-            tangents: self
-                .tangents
-                .as_ref()
-                .map(|tangents| pick(tangents, list())),
-            texture_coordinates: self
-                .texture_coordinates
-                .iter()
-                .map(|set| pick(set, list()))
-                .collect(),
-            colors: self.colors.as_ref().map(|colors| pick(colors, list())),
-            extent: Remembered::default(),
-            maker: Remembered::default(),
-        })
     }
 }
 
@@ -543,60 +516,6 @@ mod tests {
         }
         let same = original.clone().transformed(&DAffine3::IDENTITY);
         assert_eq!(original.positions().as_ptr(), same.positions().as_ptr());
-    }
-
-    /// Facets of a large mesh are computed, those of a small one are at hand; nobody can tell which.
-    #[test]
-    fn flat_facets_are_the_same_wherever_they_come_from() {
-        let rows = 300;
-        let place = |k: u32| {
-            let (x, y) = (f64::from(k % rows), f64::from(k / rows));
-            DVec3::new(x, (0.1 * x).sin() * y.cos(), y)
-        };
-        let quad = |k: u32| [[k, k + 1, k + rows + 1], [k, k + rows + 1, k + rows]];
-        let quads = (0..rows * (rows - 1)).filter(|k| k % rows < rows - 1);
-        let triangles: Vec<[u32; 3]> = quads.flat_map(quad).collect();
-        // The last one is in no triangle.
-        let places: Vec<DVec3> = (0..rows * rows)
-            .map(place)
-            .chain([DVec3::splat(1e9)])
-            .collect();
-        let sheet = Mesh::new(places, triangles.clone()).unwrap();
-        let large = sheet.clone().with_flat_normals().unwrap();
-        assert!(large.vertex_count() > MANY_VERTICES && large.vertices.facets().is_some());
-        let corners = triangles.iter().flatten();
-        let positions = corners.map(|&corner| sheet.positions()[corner as usize]);
-        let positions: Vec<DVec3> = positions.collect();
-        let normals = large.normals().unwrap().to_vec();
-        let listed = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
-        let own = Mesh::from_parts(
-            positions,
-            listed.collect(),
-            Some(normals),
-            None,
-            vec![],
-            None,
-        );
-        assert_eq!(large.bounds(), own.bounds());
-        // None of them is shown where they differ, for they are long.
-        assert!(large == own);
-        assert_eq!(large.corners_of(7), own.corners_of(7));
-        let twice = large.clone().without_normals().with_flat_normals().unwrap();
-        assert!(twice == own);
-        let mirror = DAffine3::from_scale(DVec3::new(-1.0, 2.0, 1.0));
-        let moved = sheet
-            .clone()
-            .with_flat_normals()
-            .unwrap()
-            .transformed(&mirror);
-        assert!(moved == own.transformed(&mirror));
-        // A part of it is small.
-        let few = Mesh::new(sheet.positions().to_vec(), triangles[..100].to_vec()).unwrap();
-        let few = few.with_flat_normals().unwrap();
-        assert!(few.vertices.facets().is_none());
-        assert!(few.positions() == &large.positions()[..300]);
-        assert!(few.normals().unwrap() == &large.normals().unwrap()[..300]);
-        assert_eq!(few.triangles(), &large.triangles()[..100]);
     }
 
     #[test]

@@ -17,6 +17,13 @@ pub(super) fn pick<T: Copy + Send + Sync>(values: &[T], indices: &[u32]) -> Arc<
     picked.into()
 }
 
+/// The first `count` of the values of these arrays, each of which was written in its own place in the result.
+pub(crate) fn flattened<T, const N: usize>(arrays: Vec<[T; N]>, count: usize) -> Vec<T> {
+    let mut values = arrays.into_flattened();
+    values.truncate(count);
+    values
+}
+
 /// Makes something else of every value.
 pub(super) fn change<T: Copy + Send + Sync>(values: &mut [T], new: impl Fn(T) -> T + Sync) {
     let jobs = values.par_iter_mut().with_min_len(VALUES_PER_JOB);

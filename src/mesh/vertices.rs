@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::extent::Extent;
 use super::triangles::Triangles;
-use super::values::flat_normal;
+use super::values::{flat_normal, flattened};
 use super::vectors::{Places, Vectors};
 
 /// A mesh with more vertices than this computes them where they are wanted, if it can. Of a smaller one they take little
@@ -219,17 +219,18 @@ impl Computed {
             self.compute(first, &mut positions[..count], directions);
             (positions, normals)
         };
-        let flattened = |arrays: Vec<[DVec3; VERTICES_AT_ONCE]>| {
-            let mut vectors = arrays.into_flattened();
-            vectors.truncate(self.count);
-            vectors
-        };
         match self.has_normals {
             true => {
                 let (positions, normals): (Vec<_>, Vec<_>) = jobs.map(array).unzip();
-                (flattened(positions), flattened(normals))
+                (
+                    flattened(positions, self.count),
+                    flattened(normals, self.count),
+                )
             }
-            false => (flattened(jobs.map(|job| array(job).0).collect()), vec![]),
+            false => {
+                let positions = jobs.map(|job| array(job).0).collect();
+                (flattened(positions, self.count), vec![])
+            }
         }
     }
 

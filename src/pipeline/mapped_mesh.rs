@@ -4,7 +4,7 @@ use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
 use crate::light_cone::{Batch, Extremes, ModelView, View};
-use crate::mesh::{Extent, MANY_VERTICES, Mesh, VALUES_PER_JOB, VERTICES_AT_ONCE};
+use crate::mesh::{Extent, MANY_VERTICES, Mesh, VALUES_PER_JOB, VERTICES_AT_ONCE, flattened};
 
 /// Number of vertices whose extremes are found together. It is a multiple of [`VERTICES_AT_ONCE`], and constant: which of 0
 /// and -0 is less depends on it.
@@ -152,13 +152,11 @@ fn places(view: &View, rest: &Mesh) -> (Vec<DVec3>, Vec<DVec3>, Extremes) {
         (extremes, (positions, normals))
     });
     let (extremes, (positions, normals)): (Vec<_>, (Vec<_>, Vec<_>)) = arrays.unzip();
-    let flattened = |arrays: Vec<[DVec3; VERTICES_IN_BATCH]>| {
-        let mut vectors = arrays.into_flattened();
-        vectors.truncate(vertices);
-        vectors
-    };
-    let extremes = extremes.into_iter().fold(Extremes::NONE, Extremes::and);
-    (flattened(positions), flattened(normals), extremes)
+    (
+        flattened(positions, vertices),
+        flattened(normals, vertices),
+        extremes.into_iter().fold(Extremes::NONE, Extremes::and),
+    )
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::ReadError;
 use super::bytes::Bytes;
+use crate::mesh::flattened;
 
 /// Elements that a thread takes at a time: enough to outweigh a read, and still at hand when they are decoded.
 const JOB: usize = 1024;
@@ -55,8 +56,7 @@ impl Run<'_> {
             }
             piece
         });
-        let mut values = pieces.collect::<Vec<_>>().into_flattened();
-        values.truncate(self.count);
+        let values = flattened(pieces.collect(), self.count);
         failure.into_inner().map_or(Ok(values), Err)
     }
 
