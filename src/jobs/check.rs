@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::EffectCost;
 use super::budget::Fitted;
 use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
-use crate::pipeline::{Bounds, PlacedScene, PlacedSceneError, SurfaceOptions};
+use crate::pipeline::{Bounds, PlacedScene, PlacedSceneError};
 use crate::spacetime::ViewModel;
 use crate::write::{Provenance, schema_of};
 
@@ -137,10 +137,6 @@ impl CheckedObject {
     ///
     /// An error is returned if the scene has no photosurfaces at a step.
     pub fn of_scene(placed: &PlacedScene) -> Result<Vec<Self>, PlacedSceneError> {
-        let options = SurfaceOptions {
-            subdivide: false,
-            ..SurfaceOptions::default()
-        };
         let joined = |boxes: Option<Bounds>, other: Option<Bounds>| match (boxes, other) {
             (Some(boxes), Some(other)) => Some(boxes.joined(other)),
             (boxes, other) => boxes.or(other),
@@ -169,15 +165,11 @@ impl CheckedObject {
                 }
             })
             .collect();
-        let vertices = objects.iter().map(|object| object.vertices).sum();
         let steps = placed.scene().steps();
-        for step in steps_looked_at(steps.len(), vertices) {
+        for step in steps_looked_at(steps.len(), placed.vertices_at_rest()) {
             let proper_time = steps[step];
-            let mut surfaces = placed.photosurfaces(step, options)?;
-            for object in &mut objects {
-                let parts = surfaces.by_ref().take(object.parts);
-                let boxes = parts.map(|surface| surface.mesh.bounds().map(Bounds::new));
-                let bounds = boxes.fold(None, joined);
+            for (object, extremes) in objects.iter_mut().zip(placed.seen_extremes(step)?) {
+                let bounds = extremes.bounds().map(Bounds::new);
                 object.photosurface = joined(object.photosurface, bounds);
                 object
                     .photosurface_at_steps

@@ -89,14 +89,14 @@ pub(super) struct Limits {
 }
 
 impl StepTolerance {
-    /// The tolerance of an object whose parts, as placed, are `seen` like this; its facets are taken for flat until
-    /// `deviation` is set.
+    /// The tolerance of an object whose parts are seen with these extremes; its facets are taken for flat until `deviation`
+    /// is set.
     pub(super) fn new(
         placed_object: &PlacedObject,
         view: View,
         tolerance: Tolerance,
         precision: Precision,
-        seen: &[MappedMesh],
+        seen: &[Extremes],
     ) -> Self {
         let shaped = placed_object.shaped.as_ref();
         let aimed = tolerance.times(placed_object.loosening);
@@ -130,12 +130,13 @@ impl StepTolerance {
         }
         let rounding = self.rounding_of_all(parts, seen);
         let left = self.aimed_length - curvature - rounding;
+        let extremes: Vec<Extremes> = seen.iter().map(|seen| seen.extremes).collect();
         Limits {
             curvature,
             rounding,
             left,
-            allowance: self.allowance(self.aimed, left, curvature, rounding, seen),
-            whole: self.allowance(self.tolerance, self.length, 0.0, 0.0, seen),
+            allowance: self.allowance(self.aimed, left, curvature, rounding, &extremes),
+            whole: self.allowance(self.tolerance, self.length, 0.0, 0.0, &extremes),
         }
     }
 
@@ -220,7 +221,8 @@ impl StepTolerance {
                     true => MIN_DISTANCE,
                     false => MIN_DISTANCE_UNTOUCHED,
                 };
-                let min_length = share * diagonal(seen) * degrees.to_radians().sin();
+                let extremes: Vec<Extremes> = seen.iter().map(|seen| seen.extremes).collect();
+                let min_length = share * diagonal(&extremes) * degrees.to_radians().sin();
                 let allowed = (0..count).into_par_iter().map(|index| {
                     let nearest = self.view.seen_distance(nearest(index));
                     // The facets that this leads to are other ones: a little room for their distances.
@@ -249,7 +251,7 @@ impl StepTolerance {
         left: f64,
         curvature: f64,
         rounding: f64,
-        seen: &[MappedMesh],
+        seen: &[Extremes],
     ) -> Allowance {
         let velocity = self.view.relative_velocity();
         let (gamma, gamma_beta) = (velocity.gamma(), velocity.gamma_beta());
@@ -280,12 +282,12 @@ impl StepTolerance {
 }
 
 /// A tolerance as a length in the observer's frame; an angle at the nearest vertex.
-fn length_of(tolerance: Tolerance, seen: &[MappedMesh]) -> f64 {
+fn length_of(tolerance: Tolerance, seen: &[Extremes]) -> f64 {
     match (tolerance.unit(), tolerance.number()) {
         (Unit::Absolute, length) => length,
         (Unit::Relative, fraction) => fraction * diagonal(seen),
         (Unit::Degrees, degrees) => {
-            let distances = seen.iter().map(|seen| seen.extremes.nearest);
+            let distances = seen.iter().map(|seen| seen.nearest);
             let nearest = distances.fold(f64::INFINITY, f64::min);
             degrees.to_radians().sin() * nearest.max(MIN_DISTANCE * diagonal(seen))
         }
@@ -294,13 +296,18 @@ fn length_of(tolerance: Tolerance, seen: &[MappedMesh]) -> f64 {
 
 /// Low and high corner of the box around meshes as seen, in the observer's frame.
 pub(super) fn bounds<'s>(seen: impl IntoIterator<Item = &'s MappedMesh>) -> Option<(DVec3, DVec3)> {
-    let boxes = seen.into_iter().filter_map(|seen| seen.extremes.bounds());
+    box_of(seen.into_iter().map(|seen| &seen.extremes))
+}
+
+/// Low and high corner of the box around all that is seen with these extremes, in the observer's frame.
+fn box_of<'s>(seen: impl IntoIterator<Item = &'s Extremes>) -> Option<(DVec3, DVec3)> {
+    let boxes = seen.into_iter().filter_map(Extremes::bounds);
     boxes.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
 }
 
 /// The length of the diagonal of that box.
-fn diagonal(seen: &[MappedMesh]) -> f64 {
-    bounds(seen).map_or(0.0, |(low, high)| length(high - low))
+fn diagonal(seen: &[Extremes]) -> f64 {
+    box_of(seen).map_or(0.0, |(low, high)| length(high - low))
 }
 
 /// One of `parts` equal triangles that a triangle is made of, in its middle.

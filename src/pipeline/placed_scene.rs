@@ -9,7 +9,8 @@ use super::Bounds;
 use super::facts::{Facts, SceneFacts};
 use super::making::{Surface, make};
 use super::names::{self, UniqueNames, step_label};
-use super::placed_object::{PlacedObject, Shaped, triangle_count};
+use super::placed_object::PlacedObject;
+use super::placing::Placing;
 use super::plan::{Plan, Unrefined};
 use super::vertex_data::VertexData;
 use super::{MomentFacts, Photosurface, PlacedSceneError, SurfaceOptions};
@@ -102,27 +103,10 @@ impl PlacedScene {
             .marker
             .map(|radius| marker(&names.unique(MARKER_NAME), radius));
         let origins = models.iter().map(|model| model.origin.clone()).collect();
-        let mut objects = Vec::with_capacity(models.len());
-        for (object, model) in scene.objects().iter().zip(models) {
-            let count = model.parts.len();
-            let parts = model.parts.into_iter().map(|part| {
-                let name = names.unique(&wanted_name(object, &part, count));
-                (name, part.transformed(&object.model_to_rest()))
-            });
-            let parts: Vec<(String, Part)> = parts.collect();
-            let shaped = Shaped::of(object);
-            objects.push(PlacedObject {
-                source_triangles: match &shaped {
-                    Some(shaped) => shaped.min_triangles(&parts),
-                    None => triangle_count(&parts),
-                },
-                parts,
-                shaped,
-                loosening: 1.0,
-                beside: DVec3::ZERO,
-                granted: None,
-            });
-        }
+        let mut placing = Placing::new(names);
+        let models = scene.objects().iter().zip(models);
+        let objects = models.map(|(object, model)| placing.placed(object, model));
+        let objects = objects.collect();
         let placed = Self {
             scene,
             marker,
@@ -248,10 +232,7 @@ impl PlacedScene {
         step: usize,
         wanted: SurfaceOptions,
     ) -> Result<impl Iterator<Item = Photosurface>, PlacedSceneError> {
-        let steps = self.scene.steps().len();
-        if step >= steps {
-            return Err(PlacedSceneError::Step { step, steps });
-        }
+        self.check_step(step)?;
         let objects = self.scene.objects().iter().zip(&self.objects);
         let made = objects.flat_map(move |(object, placed_object)| {
             let plan = self.plan(object, placed_object, step, wanted);
@@ -262,6 +243,15 @@ impl PlacedScene {
             })
         });
         Ok(made)
+    }
+
+    /// Whether the scene has a step.
+    pub(super) fn check_step(&self, step: usize) -> Result<(), PlacedSceneError> {
+        let steps = self.scene.steps().len();
+        match step < steps {
+            true => Ok(()),
+            false => Err(PlacedSceneError::Step { step, steps }),
+        }
     }
 
     /// The state before refinement at one step, for each object.
@@ -389,7 +379,8 @@ fn is_of_its_shape(object: &Object, model: &Model) -> bool {
         return true;
     };
     if let [part] = &model.parts[..]
-        && part.mesh().maker() == Some(shape)
+        && let Some(maker) = part.mesh().maker()
+        && (maker == shape || Some(maker) == shape.coarsest_flat().as_ref())
     {
         return true;
     }
@@ -404,7 +395,7 @@ fn is_of_its_shape(object: &Object, model: &Model) -> bool {
 }
 
 /// The wanted name of a part; `parts` is the number of parts of its object.
-fn wanted_name(object: &Object, part: &Part, parts: usize) -> String {
+pub(super) fn wanted_name(object: &Object, part: &Part, parts: usize) -> String {
     match parts {
         1 => object.name.clone(),
         _ => format!("{}_{}", object.name, part.name),

@@ -10,6 +10,7 @@ mod checker;
 mod deviation;
 mod error;
 mod flat;
+mod flat_form;
 mod lathe;
 mod lattice;
 mod round;
