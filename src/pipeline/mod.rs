@@ -1,5 +1,6 @@
 //! The pipeline: it makes the photosurface of every part at every step from a scene and its models.
 
+mod batches;
 mod blurred;
 mod bounds;
 mod budget;

@@ -3,9 +3,11 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use rayon::prelude::*;
 use serde_json::Value;
 
 use super::Bounds;
+use super::batches::Batches;
 use super::facts::{Facts, SceneFacts};
 use super::making::{Surface, make};
 use super::names::{self, UniqueNames, step_label};
@@ -233,16 +235,41 @@ impl PlacedScene {
         wanted: SurfaceOptions,
     ) -> Result<impl Iterator<Item = Photosurface>, PlacedSceneError> {
         self.check_step(step)?;
-        let objects = self.scene.objects().iter().zip(&self.objects);
-        let made = objects.flat_map(move |(object, placed_object)| {
-            let plan = self.plan(object, placed_object, step, wanted);
-            let (shown, beside) = (plan.shown, placed_object.beside);
-            let surfaces = make(plan, wanted);
-            surfaces.into_iter().map(move |surface| {
-                self.photosurface(object, (step, beside), &shown, surface, wanted)
+        let mut batches = Batches::of(self.objects.len());
+        let next_batch = move || {
+            let batch = batches.next()?;
+            let made: Vec<Made<'_>> = match batch.len() {
+                1 => vec![self.made(batch.start, step, wanted)],
+                _ => {
+                    let objects = batch.into_par_iter();
+                    objects
+                        .map(|object| self.made(object, step, wanted))
+                        .collect()
+                }
+            };
+            batches.made(made.iter().map(Made::triangles).max().unwrap_or(0));
+            Some(made)
+        };
+        let made = std::iter::from_fn(next_batch).flatten();
+        Ok(made.flat_map(move |made| {
+            let object = &self.scene.objects()[made.object];
+            let beside = self.objects[made.object].beside;
+            let surfaces = made.surfaces.into_iter();
+            surfaces.map(move |surface| {
+                self.photosurface(object, (step, beside), &made.shown, surface, wanted)
             })
-        });
-        Ok(made)
+        }))
+    }
+
+    /// Makes the surfaces of one object, by its number, at one step.
+    fn made(&self, number: usize, step: usize, wanted: SurfaceOptions) -> Made<'_> {
+        let (object, placed_object) = (&self.scene.objects()[number], &self.objects[number]);
+        let plan = self.plan(object, placed_object, step, wanted);
+        Made {
+            object: number,
+            shown: plan.shown,
+            surfaces: make(plan, wanted),
+        }
     }
 
     /// Whether the scene has a step.
@@ -357,6 +384,21 @@ impl PlacedScene {
             around: surface.around,
             beside,
         }
+    }
+}
+
+/// The surfaces of one object at one step.
+struct Made<'a> {
+    /// Its number in the scene.
+    object: usize,
+    shown: ModelView,
+    surfaces: Vec<Surface<'a>>,
+}
+
+impl Made<'_> {
+    fn triangles(&self) -> usize {
+        let meshes = self.surfaces.iter().map(|surface| &surface.seen.mesh);
+        meshes.map(|mesh| mesh.triangle_count()).sum()
     }
 }
 
