@@ -41,7 +41,7 @@ pub struct CheckedObject {
     pub model: ViewModel,
     /// How many parts it has.
     pub parts: usize,
-    /// Number of vertices at rest.
+    /// Number of vertices at rest; a flat shape without a resolution has its coarsest form.
     pub vertices: usize,
     /// The largest Lorentz factor of the observer's velocity in the object's rest frame, over all steps.
     pub relative_gamma: f64,
@@ -51,8 +51,8 @@ pub struct CheckedObject {
     /// its place there; for a moving object, in the axes of its rest frame. Absent if the object has no vertices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_rest: Option<Bounds>,
-    /// The box around the places where these vertices are seen at the steps that were looked at, in the observer's frame.
-    /// Between vertices a photosurface may reach beyond.
+    /// The box around the places where these vertices, and of a flat shape many places between them, are seen at the steps
+    /// that were looked at, in the observer's frame. Between them a photosurface may reach beyond.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub photosurface: Option<Bounds>,
     /// The same at each of these steps: at all, or at so many as together have some million vertices, evenly spread from the
@@ -229,13 +229,16 @@ impl CheckedEffect {
     fn of(fitted: &Fitted) -> Vec<Self> {
         let placed = &fitted.placed;
         let costs = EffectCost::of(placed);
-        // As many vertices for a triangle as there are at rest.
+        // As many vertices for a triangle as there are at rest, and half a vertex for each triangle that refinement adds:
+        // a vertex inside a facet adds two.
         let vertices = placed.objects().zip(&fitted.predictions);
         let vertices = vertices.map(|((_, parts), prediction)| {
             let meshes = || parts.iter().map(|(_, part)| part.mesh());
             let vertices: usize = meshes().map(|mesh| mesh.vertex_count()).sum();
             let triangles: usize = meshes().map(|mesh| mesh.triangle_count()).sum();
-            prediction.triangles * vertices as f64 / triangles.max(1) as f64
+            let for_each = vertices as f64 / triangles.max(1) as f64;
+            let before = prediction.triangles_in;
+            before * for_each + 0.5 * (prediction.triangles - before)
         });
         let vertices: f64 = vertices.sum();
         let picture = PictureSettings::new(PictureView::Observer(PictureMethod::Rays));

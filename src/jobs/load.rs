@@ -150,6 +150,8 @@ struct Shapes {
 impl Shapes {
     /// The model of a shape. A flat shape whose facets only the tolerance determines has its coarsest form.
     fn model(&mut self, shape: &Shape, appearance: &Appearance) -> Result<Model, ShapeError> {
+        // Without refinement the shape gets its default resolution after all.
+        shape.check_flat_size()?;
         let coarsest = shape.coarsest_flat();
         let shape = coarsest.as_ref().unwrap_or(shape);
         let key = json(shape);

@@ -424,7 +424,8 @@ fn is_of_its_shape(object: &Object, model: &Model) -> bool {
         && let Some(maker) = part.mesh().maker()
         && (maker == shape || Some(maker) == shape.coarsest_flat().as_ref())
     {
-        return true;
+        // Without refinement the shape gets its default resolution.
+        return shape.check_flat_size().is_ok();
     }
     let Ok(made) = shape.model(appearance) else {
         return false;

@@ -33,18 +33,19 @@ impl PlacedScene {
         let share = self.share_of_segments();
         for (object, placed_object) in self.scene.objects().iter().zip(&self.objects) {
             let (stand_in, view) = self.stand_in(object, placed_object, step);
-            let parts: Cow<'_, [(String, Part)]> = match &stand_in.shaped {
-                Some(shaped) if shaped.is_sampled() => {
-                    let shape = shaped.shape.with_share_of_segments(share);
-                    shaped.parts_like(&shape, &stand_in.parts).into()
-                }
-                _ => (&stand_in.parts).into(),
-            };
-            for seen in seen_parts(&view, &parts) {
+            for seen in seen_parts(&view, &stand_in.parts_looked_at(share)) {
                 tell(seen.mesh.positions());
             }
         }
         Ok(())
+    }
+
+    /// Each object with its parts at rest as cameras have to look at them: a flat shape has its default resolution, or a
+    /// coarser one if there are very many objects.
+    pub(crate) fn looked_at(&self) -> impl Iterator<Item = (&Object, Cow<'_, [(String, Part)]>)> {
+        let share = self.share_of_segments();
+        let objects = self.scene.objects().iter().zip(&self.objects);
+        objects.map(move |(object, placed)| (object, placed.parts_looked_at(share)))
     }
 
     /// For each object the extremes of where the vertices of its default resolution are seen at one step.
@@ -93,6 +94,17 @@ impl PlacedScene {
 }
 
 impl PlacedObject {
+    /// The parts; a flat shape has so large a part of its default number of segments.
+    fn parts_looked_at(&self, share: f64) -> Cow<'_, [(String, Part)]> {
+        match &self.shaped {
+            Some(shaped) if shaped.is_sampled() => {
+                let shape = shaped.shape.with_share_of_segments(share);
+                shaped.parts_like(&shape, &self.parts).into()
+            }
+            _ => (&self.parts).into(),
+        }
+    }
+
     /// The number of vertices of all parts; a flat shape has its default resolution.
     fn vertices(&self) -> usize {
         match &self.shaped {

@@ -13,7 +13,7 @@ use super::{Count, Length, ShapeError};
 pub struct Cuboid {
     /// Lengths along x, y and z, in the object's units before `scale`.
     pub size: [Length; 3],
-    /// Number of segments along each edge; 32 if absent.
+    /// Number of segments along each edge. If absent, refinement starts from one; without refinement there are 32.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub resolution: Option<Count<1, 32>>,
 }
@@ -23,8 +23,7 @@ impl Cuboid {
     pub(super) const CHECKER_CELLS: [u32; 2] = [8, 8];
 
     pub(super) fn surface(&self) -> Result<Surface, ShapeError> {
-        let segments = u64::from(self.resolution.unwrap_or_default().get());
-        let mut surface = Surface::with_room_for(12 * segments * segments)?;
+        let mut surface = Surface::with_room_for(self.triangle_count())?;
         for square in self.squares() {
             square.add_to(&mut surface, 1.0);
         }
@@ -38,6 +37,10 @@ impl Cuboid {
 
     pub(super) fn vertex_count(&self) -> usize {
         self.squares().map(|square| square.vertex_count()).sum()
+    }
+
+    pub(super) fn triangle_count(&self) -> u64 {
+        self.squares().map(|square| square.triangle_count()).sum()
     }
 
     fn squares(&self) -> impl Iterator<Item = Square> {
@@ -60,7 +63,7 @@ pub struct Grid {
     pub size: Length,
     /// Number of checker cells along each edge.
     pub cells: Count<1, 1>,
-    /// Number of segments along the edge of a cell; 8 if absent.
+    /// Number of segments along the edge of a cell. If absent, refinement starts from one; without refinement there are 8.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub resolution: Option<Count<1, 8>>,
 }
@@ -70,11 +73,9 @@ impl Grid {
     pub(super) const CHECKER_CELLS: [u32; 2] = [2, 2];
 
     pub(super) fn surface(&self) -> Result<Surface, ShapeError> {
-        let square = self.square();
-        let segments = u64::from(square.segments);
-        let mut surface = Surface::with_room_for(2 * segments * segments)?;
+        let mut surface = Surface::with_room_for(self.triangle_count())?;
         let repeats = f64::from(self.cells.get()) / 2.0;
-        square.add_to(&mut surface, repeats);
+        self.square().add_to(&mut surface, repeats);
         Ok(surface)
     }
 
@@ -85,6 +86,10 @@ impl Grid {
 
     pub(super) fn vertex_count(&self) -> usize {
         self.square().vertex_count()
+    }
+
+    pub(super) fn triangle_count(&self) -> u64 {
+        self.square().triangle_count()
     }
 
     fn square(&self) -> Square {
@@ -117,6 +122,10 @@ impl Square {
     fn vertex_count(&self) -> usize {
         let row = self.segments as usize + 1;
         row * row
+    }
+
+    fn triangle_count(&self) -> u64 {
+        2 * u64::from(self.segments) * u64::from(self.segments)
     }
 
     fn places(&self, mut tell: impl FnMut(DVec3)) {

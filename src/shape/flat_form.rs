@@ -6,7 +6,8 @@
 
 use glam::DVec3;
 
-use super::Shape;
+use super::surface::check_triangles;
+use super::{Shape, ShapeError};
 
 impl Shape {
     /// The form with the fewest facets of a shape with flat faces that has no resolution of its own; `None` for other shapes.
@@ -36,6 +37,20 @@ impl Shape {
             }
             _ => self.clone(),
         }
+    }
+
+    /// Refuses a shape with flat faces that is too fine at its own or its default resolution; a round shape is never.
+    ///
+    /// # Errors
+    ///
+    /// More than 20 million triangles.
+    pub(crate) fn check_flat_size(&self) -> Result<(), ShapeError> {
+        check_triangles(match self {
+            Self::Cuboid(shape) => shape.triangle_count(),
+            Self::Grid(shape) => shape.triangle_count(),
+            Self::Lattice(shape) => shape.triangle_count(),
+            _ => 0,
+        })
     }
 
     /// The number of vertices of a shape with flat faces; 0 for a round shape.
@@ -111,6 +126,17 @@ mod tests {
         let round = Shape::sphere(1.0).unwrap();
         assert_eq!(round.with_share_of_segments(0.1), round);
         assert_eq!(round.flat_vertex_count(), 0);
+    }
+
+    #[test]
+    fn a_shape_is_too_fine_where_its_mesh_is() {
+        for shape in flat_shapes() {
+            assert_eq!(shape.check_flat_size(), Ok(()));
+        }
+        let fine = Shape::grid(1.0, 396).unwrap();
+        assert!(fine.check_flat_size().is_err() && fine.mesh().is_err());
+        let coarsest = fine.coarsest_flat().unwrap();
+        assert!(coarsest.check_flat_size().is_ok() && coarsest.mesh().is_ok());
     }
 
     #[test]

@@ -33,7 +33,8 @@ struct LatticeFields {
     spacing: Length,
     /// Width of a bar, less than `spacing`, in the object's units before `scale`.
     thickness: Length,
-    /// Number of segments along a bar from crossing to crossing; 4 if absent.
+    /// Number of segments along a bar from crossing to crossing. If absent, refinement starts from one; without refinement
+    /// there are 4.
     resolution: Option<Count<1, 4>>,
 }
 
@@ -159,7 +160,7 @@ impl Lattice {
 
     /// Two triangles for each of four sides of each segment, and for each of six of each crossing but
     /// for those where the two ends of a bar are attached.
-    fn triangle_count(&self) -> u64 {
+    pub(super) fn triangle_count(&self) -> u64 {
         let [crossings, bars] = self.crossings_and_bars();
         2 * (4 * u64::from(self.resolution.unwrap_or_default().get()) * bars + 6 * crossings
             - 2 * bars)

@@ -63,6 +63,7 @@ mod import {
 mod export {
     mod animation;
     mod camera;
+    mod crowd;
     mod hard_properties;
     mod jobs;
     mod large;
