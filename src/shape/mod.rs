@@ -7,6 +7,7 @@
 mod appearance;
 mod band;
 mod checker;
+mod curved;
 mod deviation;
 mod error;
 mod flat;
@@ -23,6 +24,7 @@ mod witness;
 
 pub use appearance::{Appearance, Color};
 pub(crate) use band::Band;
+pub(crate) use curved::{Body, Jet, LEAST_PARTS, MAX_SPAN, Piece, Spot, axes_of_turn};
 pub use error::ShapeError;
 pub use flat::{Cuboid, Grid};
 pub use lattice::Lattice;
