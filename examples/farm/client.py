@@ -22,6 +22,19 @@ STRIKES = 2
 LOST = (OSError, TimeoutError, RuntimeError)
 
 
+class Sent:
+    """A function that travels to workers as it is: they cannot import it, as they have nothing of this folder."""
+
+    def __init__(self, function):
+        self.pickled = cloudpickle.dumps(function)
+
+    def __reduce__(self):
+        return cloudpickle.loads, (self.pickled,)
+
+    def __call__(self, *arguments):
+        raise TypeError("this is for workers")
+
+
 class Chunk:
     """Some steps in a row, and what has become of them so far."""
 
@@ -48,8 +61,8 @@ class Farm:
         # Parts by the keys that the scheduler knows them by, and what it said of lost workers.
         self.handed_out = {}
         self.lost = deque()
-        # The workers have nothing of this folder.
         cloudpickle.register_pickle_by_value(worker)
+        self.work = Sent(worker.work)
 
     def run(self):
         """Does all chunks; a row of the table for each."""
@@ -97,6 +110,7 @@ class Farm:
         for thing in (self.client, self.cluster):
             try:
                 if thing is self.client and thing is not None and thing.status == "running":
+                    thing.unsubscribe_topic("all")
                     thing.unregister_worker_plugin(self.job.name)
                 if thing is not None:
                     thing.close()
@@ -181,7 +195,7 @@ class Farm:
         self.handed_out[key] = chunk
         try:
             chunk.future = self.client.submit(
-                worker.work, self.job.name, self.job.command, self.job.arguments, chunk.first, chunk.end,
+                self.work, self.job.name, self.job.command, self.job.arguments, chunk.first, chunk.end,
                 self.options.worker_threads,
                 key=key, pure=False, workers=sorted(places) if restricted else None, priority=-chunk.first,
             )

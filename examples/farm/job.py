@@ -84,7 +84,7 @@ class Job:
 
     def folders(self):
         """Folders that must be there before the program begins."""
-        files = [output["file"] for outputs in self.outputs.values() for output in outputs]
+        files = [output["file"] for outputs in self.outputs.values() for output in outputs if output["file"]]
         words = self.arguments
         allowed = [word for flag, word in zip(words, words[1:]) if flag == "--allow-read"]
         allowed += [word.partition("=")[2] for word in words if word.startswith("--allow-read=")]

@@ -192,7 +192,8 @@ pub(super) fn made(args: &RenderArgs, loaded: &Loaded) -> anyhow::Result<Outcome
     if method == Method::Rays {
         tell_of_blurred(&first, verbosity);
     }
-    let fits_budget = camera.shows_meshes(method) && settings.surface_options.subdivide;
+    let fits_budget =
+        camera.shows_meshes(method) && settings.surface_options.subdivide && budget < u64::MAX;
     let fitted = |placed| match fits_budget {
         true => {
             let wanted = settings.surface_options;

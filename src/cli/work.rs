@@ -219,20 +219,24 @@ pub(super) struct Plan {
 /// A file that a command would write.
 #[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct PlannedFile {
-    /// Its path.
-    pub(super) file: String,
+    /// Its path; none where the run of a sweep is an error.
+    pub(super) file: Option<String>,
     /// The first step in it, counted from 0, and the one after the last.
     pub(super) steps: [usize; 2],
     /// Whether an earlier run with --resume has finished it.
     pub(super) finished: bool,
+    /// Why there will be no file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) error: Option<String>,
 }
 
 impl PlannedFile {
     pub(super) fn new(file: &Path, steps: Range<usize>, finished: bool) -> Self {
         Self {
-            file: file.display().to_string(),
+            file: Some(file.display().to_string()),
             steps: [steps.start, steps.end],
             finished,
+            error: None,
         }
     }
 }

@@ -95,6 +95,8 @@ pub struct ExportLevel {
     placed: PlacedScene,
     settings: ExportSettings,
     format: Format,
+    /// Of everything beside the steps that files depend on, if they may be resumed.
+    fingerprint: Option<Fingerprint>,
     /// One file for each step, or one for all steps.
     files: Vec<PathBuf>,
     /// The steps in the files.
@@ -140,6 +142,7 @@ pub fn export_levels(
                 .report
                 .as_ref()
                 .map(|report| with_suffix(report, suffix)),
+            fingerprint: settings.fingerprint(&placed, format),
             settings: settings.clone(),
             camera: camera.clone(),
             sees_marker,
@@ -221,16 +224,14 @@ impl ExportLevel {
 
     /// The fingerprint of a file, which is counted from 0, if files may be resumed.
     fn fingerprint(&self, file: usize) -> Option<Fingerprint> {
-        let of_level = self.settings.fingerprint(&self.placed, self.format)?;
-        Some(of_level.with("steps", &self.steps_of(file)))
+        Some(self.fingerprint?.with("steps", &self.steps_of(file)))
     }
 
     /// The seal of a report of these files.
     fn report_seal(&self, is_certified: bool) -> Option<Seal> {
-        let of_level = self.settings.fingerprint(&self.placed, self.format)?;
         let times = self.settings.report_times;
         Some(Seal {
-            fingerprint: of_level.with("report", &(&self.steps, times)),
+            fingerprint: self.fingerprint?.with("report", &(&self.steps, times)),
             is_certified,
         })
     }
@@ -276,7 +277,8 @@ impl ExportLevel {
         };
         let finished = self.finished();
         let is_finished = finished.iter().all(Option::is_some);
-        let fitted = (wanted.subdivide && !is_finished)
+        let is_limited = self.settings.max_triangles < u64::MAX;
+        let fitted = (wanted.subdivide && is_limited && !is_finished)
             .then(|| Fitted::new(self.placed.clone(), wanted, self.settings.max_triangles));
         clock.stop("predict");
         FittedExport {

@@ -39,7 +39,7 @@ pub struct ExportSettings {
     pub subdivide: bool,
     /// Limit on the triangles of all photosurfaces of one level together. If a tolerance needs more, the largest gaps
     /// are closed first and the result is not certified. The triangles of a source are always kept, even if they exceed
-    /// the limit.
+    /// the limit. With `u64::MAX` there is none, and nothing is predicted before the first step is made.
     pub max_triangles: u64,
     /// The file of a JSON [`Report`](crate::write::Report), if one is to be written; each level has its own.
     pub report: Option<PathBuf>,

@@ -134,7 +134,7 @@ class Run:
         self.command = [sys.executable, str(farm), *map(str, words), "--scheduler", scheduler, "--table", "table.json"]
         self.process = subprocess.Popen(self.command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
-    def when(self, pattern, count, seconds=60):
+    def when(self, pattern, count, seconds=300):
         """Waits until so many files have come back."""
         end = time.monotonic() + seconds
         while len(list(self.folder.glob(pattern))) < count:
@@ -142,7 +142,7 @@ class Run:
             assert time.monotonic() < end, f"no {count} files"
             time.sleep(0.005)
 
-    def ended(self, seconds=120):
+    def ended(self, seconds=600):
         """Exit status, table and messages."""
         out, err = self.process.communicate(timeout=seconds)
         return self.process.returncode, out, err

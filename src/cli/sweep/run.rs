@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{bail, ensure};
 use photosurface::write::writes_are_abandoned;
 
 use super::file::{Common, Configuration, Configured, configurations};
@@ -45,15 +45,9 @@ pub(in crate::cli) struct SweepArgs {
     #[arg(value_name = "SCENE|MESH")]
     input: Option<PathBuf>,
     /// The folder, which must exist, of the files that FILE does not name: DIR/NAME.glb, or DIR/NAME.png
-    #[arg(
-        short,
-        long,
-        value_name = "DIR",
-        default_value = "",
-        hide_default_value = true,
-        help_heading = "Output"
-    )]
-    output: PathBuf,
+    /// [default: this directory]
+    #[arg(short, long, value_name = "DIR", help_heading = "Output")]
+    output: Option<PathBuf>,
     /// Write the table of the runs as JSON; - for stdout, in place of the table
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     json: Option<PathBuf>,
@@ -84,7 +78,7 @@ pub(in crate::cli) fn run(args: &SweepArgs) -> anyhow::Result<Status> {
     let shows_table = shows_table(args.json.as_deref(), args.csv.as_deref())?;
     let common = Common {
         input: args.input.as_deref(),
-        folder: &args.output,
+        folder: args.output.as_deref().unwrap_or(Path::new("")),
         resume: args.resume,
         plan: args.plan,
     };
@@ -236,10 +230,20 @@ fn plan<'a>(
     let mut inputs = vec![args.file.display().to_string()];
     let mut outputs = vec![];
     for (number, configuration) in chosen {
-        let outcome = made(configuration, loaded);
-        let outcome =
-            outcome.with_context(|| format!("run {number} \"{}\"", configuration.name))?;
-        let Some(plan) = outcome.plan else {
+        let steps = [number, number + 1];
+        let plan = match made(configuration, loaded) {
+            Ok(outcome) => outcome.plan,
+            Err(error) => {
+                outputs.push(PlannedFile {
+                    file: None,
+                    steps,
+                    finished: false,
+                    error: Some(format!("{error:#}")),
+                });
+                continue;
+            }
+        };
+        let Some(plan) = plan else {
             continue;
         };
         for input in plan.inputs {
@@ -247,10 +251,11 @@ fn plan<'a>(
                 inputs.push(input);
             }
         }
-        outputs.extend(plan.outputs.into_iter().map(|file| PlannedFile {
-            steps: [number, number + 1],
-            ..file
-        }));
+        outputs.extend(
+            plan.outputs
+                .into_iter()
+                .map(|file| PlannedFile { steps, ..file }),
+        );
     }
     let plan = Plan {
         version: env!("CARGO_PKG_VERSION"),

@@ -24,7 +24,8 @@ fn a_part_of_an_export_is_that_of_the_whole() {
         ("glb", "", 0),
         ("gltf", "--no-subdivide --max-triangles 9", 0),
         ("ply", "--tolerance 1e-3 --max-triangles 900", 1),
-        ("glb", "--camera --models seen,rest", 0),
+        ("glb", "--camera --track", 0),
+        ("glb", "--models seen,rest", 0),
     ] {
         let line = format!("export ball.json {STEPS} {flags} --split");
         let run = workplace.run(&format!("{line} -o whole.{extension}"));
@@ -80,7 +81,11 @@ fn finished_files_stay_and_others_are_made_anew() {
     ] {
         let line = format!("{command} {STEPS} --progress json -o out.{extension}");
         let plain = workplace.run(&line).success();
-        assert!(lines(&plain.stderr).iter().all(|line| line["resumed"] == false));
+        assert!(
+            lines(&plain.stderr)
+                .iter()
+                .all(|line| line["resumed"] == false)
+        );
         // Without --resume nothing is sealed, and what is not sealed is not known to be finished.
         let run = workplace.run(&format!("{line} --resume")).success();
         let resumed = |stderr: &str| -> Vec<u64> {
@@ -109,11 +114,17 @@ fn finished_files_stay_and_others_are_made_anew() {
             assert_eq!(&workplace.read(&name(step)), whole, "{}", name(step));
         }
         // Another flag, another scene, another part.
-        let run = workplace.run(&format!("{line} --resume --beta 0.5")).success();
+        let run = workplace
+            .run(&format!("{line} --resume --beta 0.5"))
+            .success();
         assert_eq!(resumed(&run.stderr), [0_u64; 0], "{run}");
-        let run = workplace.run(&format!("{line} --resume --only 2..4")).success();
+        let run = workplace
+            .run(&format!("{line} --resume --only 2..4"))
+            .success();
         assert_eq!(resumed(&run.stderr), [0_u64; 0], "{run}");
-        let run = workplace.run(&format!("{line} --resume --only 1..3")).success();
+        let run = workplace
+            .run(&format!("{line} --resume --only 1..3"))
+            .success();
         assert_eq!(resumed(&run.stderr), [2], "{run}");
         for name in workplace.files() {
             if name.starts_with("out") {
@@ -128,7 +139,13 @@ fn files_that_the_scene_names_count() {
     let workplace = Workplace::with_ball();
     let line = "export square.obj --beta 0.5 -o out.glb --resume";
     workplace.run(line).success();
-    assert!(workplace.run(line).success().stderr.contains("was finished before"));
+    assert!(
+        workplace
+            .run(line)
+            .success()
+            .stderr
+            .contains("was finished before")
+    );
     let square = String::from_utf8(workplace.read("square.obj")).expect("text");
     workplace.write("square.obj", square.replace("-1 -1 0", "-1 -1.5 0"));
     let run = workplace.run(line).success();
@@ -138,12 +155,28 @@ fn files_that_the_scene_names_count() {
     workplace.run(line).success();
     let ball = String::from_utf8(workplace.read("ball.json")).expect("text");
     workplace.write("ball.json", ball.replace(": ", " :  "));
-    assert!(workplace.run(line).success().stderr.contains("was finished before"));
+    assert!(
+        workplace
+            .run(line)
+            .success()
+            .stderr
+            .contains("was finished before")
+    );
     workplace.write("ball.json", ball.replace("0.6", "0.7"));
-    assert!(!workplace.run(line).success().stderr.contains("finished before"));
+    assert!(
+        !workplace
+            .run(line)
+            .success()
+            .stderr
+            .contains("finished before")
+    );
     // A mesh from stdin has no file that could be compared, and stdout holds no finished file.
     workplace
-        .run_with("export - --beta 0.5 --resume", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", &[])
+        .run_with(
+            "export - --beta 0.5 --resume",
+            b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+            &[],
+        )
         .error(&["--resume", "stdin"]);
     workplace
         .run("export ball.json -o - --resume")
@@ -190,12 +223,20 @@ fn a_file_is_finished_only_with_its_report() {
 #[test]
 fn progress_is_told_in_lines_that_programs_read() {
     let workplace = Workplace::with_ball();
-    let run = workplace.run(&format!("export ball.json {STEPS} -o out.glb --progress json -q"));
+    let run = workplace.run(&format!(
+        "export ball.json {STEPS} -o out.glb --progress json -q"
+    ));
     let told = lines(&run.success().stderr);
     // Each step, then the file that they are in.
-    let steps: Vec<_> = told.iter().map(|line| (line["step"].as_u64(), line["steps"].as_u64())).collect();
+    let steps: Vec<_> = told
+        .iter()
+        .map(|line| (line["step"].as_u64(), line["steps"].as_u64()))
+        .collect();
     let one = |step| (Some(step), Some(1));
-    assert_eq!(steps, [one(0), one(1), one(2), one(3), one(4), (Some(0), Some(5))]);
+    assert_eq!(
+        steps,
+        [one(0), one(1), one(2), one(3), one(4), (Some(0), Some(5))]
+    );
     let file = &told[5];
     assert_eq!(file["file"], "out.glb");
     assert_eq!(file["bytes"], workplace.read("out.glb").len());
@@ -203,13 +244,17 @@ fn progress_is_told_in_lines_that_programs_read() {
     assert_eq!(file["certified"], true);
     assert!(told[..5].iter().all(|line| line["file"].is_null()));
     let pictures = "render ball.json --size 32x18 --samples 1 --progress json --only 1..3";
-    let run = workplace.run(&format!("{pictures} {STEPS} -o out.png")).success();
+    let run = workplace
+        .run(&format!("{pictures} {STEPS} -o out.png"))
+        .success();
     let told = lines(&run.stderr);
     assert_eq!(told.len(), 2, "{run}");
     assert_eq!(told[1]["file"], "out_step002.png");
     assert_eq!(told[1]["step"], 2);
     assert_eq!(told[1]["bytes"], workplace.read("out_step002.png").len());
-    let run = workplace.run(&format!("{pictures} {STEPS} --film out.gif")).success();
+    let run = workplace
+        .run(&format!("{pictures} {STEPS} --film out.gif"))
+        .success();
     let told = lines(&run.stderr);
     assert_eq!(told.len(), 3, "{run}");
     assert_eq!(told[2]["file"], "out.gif");
@@ -233,7 +278,9 @@ fn a_plan_says_what_there_is_to_do_and_makes_nothing() {
     assert_eq!(planned["outputs"][4]["steps"], serde_json::json!([4, 5]));
     let finished = |plan: &Value| -> Vec<bool> {
         let outputs = plan["outputs"].as_array().expect("outputs");
-        let each = outputs.iter().map(|output| output["finished"].as_bool().unwrap());
+        let each = outputs
+            .iter()
+            .map(|output| output["finished"].as_bool().unwrap());
         each.collect()
     };
     assert_eq!(finished(&planned), [false; 5]);
@@ -248,17 +295,51 @@ fn a_plan_says_what_there_is_to_do_and_makes_nothing() {
 fn sealed_files_are_the_same_beside_their_seal() {
     let workplace = Workplace::with_ball();
     workplace.run("export ball.json -o plain.glb").success();
-    workplace.run("export ball.json -o sealed.glb --resume").success();
+    workplace
+        .run("export ball.json -o sealed.glb --resume")
+        .success();
     let plain = glb_json(&workplace.read("plain.glb"));
     let mut sealed = glb_json(&workplace.read("sealed.glb"));
-    let extras = sealed["scenes"][0]["extras"].as_object_mut().expect("extras");
+    let extras = sealed["scenes"][0]["extras"]
+        .as_object_mut()
+        .expect("extras");
     let seal = extras.remove("seal").expect("a seal");
-    assert!(seal.as_str().is_some_and(|seal| seal.starts_with("photosurface-seal:")));
+    assert!(
+        seal.as_str()
+            .is_some_and(|seal| seal.starts_with("photosurface-seal:"))
+    );
     assert_eq!(sealed, plain);
     let picture = "render ball.json --size 32x18 --samples 1";
     workplace.run(&format!("{picture} -o plain.png")).success();
-    workplace.run(&format!("{picture} -o sealed.png --resume")).success();
-    let pixels = |name: &str| image::open(workplace.path(name)).expect("a picture").to_rgb8();
+    workplace
+        .run(&format!("{picture} -o sealed.png --resume"))
+        .success();
+    let pixels = |name: &str| {
+        image::open(workplace.path(name))
+            .expect("a picture")
+            .to_rgb8()
+    };
     assert_eq!(pixels("plain.png"), pixels("sealed.png"));
     assert_ne!(workplace.read("plain.png"), workplace.read("sealed.png"));
+}
+
+#[test]
+fn no_limit_gives_the_bytes_of_a_limit_that_is_not_reached() {
+    let workplace = Workplace::with_ball();
+    let line = format!("export square.obj --beta 0.9 {STEPS}");
+    workplace.run(&format!("{line} -o limited.glb")).success();
+    let run = workplace.run(&format!("{line} --max-triangles none -v -o free.glb"));
+    let run = run.success();
+    assert_eq!(workplace.read("free.glb"), workplace.read("limited.glb"));
+    assert!(!run.stderr.contains("about"), "{run}");
+    let line =
+        format!("render square.obj --beta 0.9 {STEPS} --size 32x18 --samples 1 --method mesh");
+    workplace.run(&format!("{line} -o limited.png")).success();
+    workplace
+        .run(&format!("{line} --max-triangles none -o free.png"))
+        .success();
+    assert_eq!(
+        workplace.read("free_step002.png"),
+        workplace.read("limited_step002.png")
+    );
 }
