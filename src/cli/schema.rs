@@ -22,11 +22,11 @@ pub(super) struct SchemaArgs {
 }
 
 pub(super) fn run(args: &SchemaArgs) -> anyhow::Result<()> {
-    let schema = match () {
-        () if args.report => Report::json_schema().to_value(),
-        () if args.check => Check::json_schema().to_value(),
-        () if args.sweep => json_schema(),
-        () => Scene::json_schema().to_value(),
+    let schema = match (args.report, args.check, args.sweep) {
+        (true, _, _) => Report::json_schema().to_value(),
+        (_, true, _) => Check::json_schema().to_value(),
+        (_, _, true) => json_schema(),
+        _ => Scene::json_schema().to_value(),
     };
     let schema = serde_json::to_string_pretty(&schema)?;
     print(|out| Ok(writeln!(out, "{schema}")?))

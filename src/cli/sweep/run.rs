@@ -93,7 +93,7 @@ pub(in crate::cli) fn run(args: &SweepArgs) -> anyhow::Result<Status> {
         counted(of, "run")
     );
     let tables = [&args.json, &args.csv].into_iter().flatten().cloned();
-    check_destinations(tables, &[args.file.clone()])?;
+    check_destinations(tables, std::slice::from_ref(&args.file))?;
     let loaded = Loaded::default();
     let chosen = configurations.iter().enumerate();
     let chosen = chosen.skip(only.start).take(only.len());
