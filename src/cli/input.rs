@@ -167,7 +167,7 @@ impl Reading<'_> {
             }
             Some(extension) if is_model_extension(extension) => self.mesh(
                 &name,
-                || Ok(self.access.read_model(path).map_err(wrong)?),
+                || self.access.read_model(path).map_err(wrong),
                 Some(path),
             ),
             // Such as what a shell makes of `<(photosurface example cube)`.
