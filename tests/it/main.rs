@@ -91,7 +91,9 @@ mod cli {
     mod flight;
     mod models;
     mod normals;
+    mod parts;
     mod render;
+    mod sweep;
 }
 
 mod page {
