@@ -118,6 +118,8 @@ impl Access {
                         if let Some((_, findings)) = of_file {
                             findings.notes.extend(found.notes);
                         }
+                        // Once for all who share the model: a clone knows what its original knows.
+                        model.bounds();
                         shaded.insert(key.clone(), model);
                     }
                     shaded[&key].clone()

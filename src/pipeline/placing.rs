@@ -70,6 +70,8 @@ impl Placing {
         }
         let original = part.mesh().clone();
         let part = part.transformed(to_rest);
+        // Once for all who share the mesh: a clone knows what its original knows.
+        part.mesh().bounds();
         self.transformed
             .insert(key, (original, part.mesh().clone()));
         part

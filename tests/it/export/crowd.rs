@@ -108,8 +108,8 @@ fn threads_make_no_difference_to_a_crowd() {
 fn the_size_of_a_flat_shape_is_that_of_its_bent_faces() {
     for source in [
         json!({ "shape": { "box": { "size": [6, 1, 4] } } }),
-        json!({ "shape": { "grid": { "size": 5, "cells": 2 } }, "rotation": [0, 0.6, 0, 0.8] }),
-        json!({ "shape": { "lattice": { "cells": 2, "spacing": 2, "thickness": 0.2 } }, "scale": [1, 2, 1] }),
+        json!({ "shape": { "grid": { "size": 5, "cells": 1 } }, "rotation": [0, 0.6, 0, 0.8] }),
+        json!({ "shape": { "lattice": { "cells": 1, "spacing": 4, "thickness": 0.2 } }, "scale": [1, 1.2, 1] }),
         json!({ "shape": { "box": { "size": [6, 1, 4] } }, "model": "delayed" }),
     ] {
         // The observer is above the middle, whose far corners are seen far behind.
