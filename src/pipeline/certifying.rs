@@ -42,7 +42,10 @@ pub(super) fn certificate(
     around: Option<(DVec3, DVec3)>,
     measured: Measured,
 ) -> Certificate {
-    let Measured { gap, counts } = measured;
+    let Measured { gap, mut counts } = measured;
+    if let Some(least) = tolerance.least_of_round(seen.extremes.nearest) {
+        counts.minimum_triangles = least;
+    }
     let gamma_beta = tolerance.view.relative_velocity().gamma_beta();
     let bounds = Bounds {
         gap: gamma_beta * gap * (1.0 + 4.0 * f64::EPSILON),

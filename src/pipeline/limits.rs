@@ -4,7 +4,7 @@
 //! the deviation of facets from a curved surface, and the gap `e` of an [`Allowance`], are lengths in the object's rest
 //! frame. A certificate adds up, in the observer's frame, `gamma beta e`, curvature and rounding.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use super::mapped_mesh::MappedMesh;
@@ -13,10 +13,11 @@ use crate::light_cone::{Extremes, View};
 use crate::material::Part;
 use crate::mesh::Mesh;
 use crate::scene::{Tolerance, Unit};
+use crate::shape::Shape;
 use crate::spacetime::length;
 use crate::tessellate::{
-    Allowance, Precision, Singles, largest_gap, largest_stretch, local_stretch, nearest_point,
-    rounding_bound,
+    About, Allowance, Allowed, Precision, Sight, Singles, largest_gap, largest_stretch,
+    local_stretch, nearest_point, needed, rounding_bound,
 };
 
 /// The fraction of a curved shape's tolerance that its facets may take by their distance from the curved surface; the
@@ -67,6 +68,8 @@ pub(super) struct StepTolerance {
     placed_deviation: f64,
     /// The digits of the numbers in the file.
     precision: Precision,
+    /// A round shape whose resolution follows from the tolerance, and the way from its own frame to that of the parts.
+    exact: Option<(Shape, DAffine3)>,
     /// Low and high corner, in the observer's frame, of the box around all steps, where all steps share one mesh in a
     /// file as morph targets.
     pub(super) box_of_all_steps: Option<(DVec3, DVec3)>,
@@ -110,8 +113,33 @@ impl StepTolerance {
             placed_deviation: shaped.map_or(0.0, |shaped| shaped.deviation)
                 * view.elongation().max(1.0),
             precision,
+            exact: shaped
+                .filter(|shaped| shaped.shape.is_curved())
+                .map(|shaped| (shaped.shape.clone(), shaped.to_frame())),
             box_of_all_steps: None,
         }
+    }
+
+    /// The fewest triangles by theory for the tolerance of the scene, with corners on the true surface of a round shape
+    /// whose resolution follows from the tolerance; `None` of any other object. `nearest` is the smallest seen distance.
+    pub(super) fn least_of_round(&self, nearest: f64) -> Option<f64> {
+        let (shape, to_frame) = self.exact.as_ref()?;
+        let to_offset = DAffine3::from_translation(-self.view.observer_rest()) * *to_frame;
+        let allowed = match (self.tolerance.unit(), self.tolerance.number()) {
+            (Unit::Degrees, degrees) => {
+                let sine = degrees.to_radians().sin();
+                let share = sine / (1.0 + sine);
+                let least = share * nearest.max(MIN_DISTANCE_UNTOUCHED * self.length / sine);
+                Allowed::Share {
+                    share,
+                    less: 0.0,
+                    least,
+                }
+            }
+            _ => Allowed::Length(self.length),
+        };
+        let sight = Sight::new(&self.view.relative_velocity(), to_offset, allowed);
+        Some(needed(shape, &sight, About::Surface).least)
     }
 
     /// The limits of these parts, each of whose facets stands for `each` smaller ones.

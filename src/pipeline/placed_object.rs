@@ -207,6 +207,14 @@ impl Shaped {
         shape
     }
 
+    /// From the shape's own frame to that of the parts.
+    pub(super) fn to_frame(&self) -> DAffine3 {
+        match &self.rest_to_stand_in {
+            Some(to_stand_in) => *to_stand_in * self.model_to_rest,
+            None => self.model_to_rest,
+        }
+    }
+
     /// The parts of the same shape with another resolution; names and materials are those of `parts`.
     pub(super) fn parts_like(
         &self,
@@ -214,10 +222,7 @@ impl Shaped {
         parts: &[(String, Part)],
     ) -> Vec<(String, Part)> {
         let mesh = shape.mesh().expect("coarser than what a shape may have");
-        let to_frame = match &self.rest_to_stand_in {
-            Some(to_stand_in) => *to_stand_in * self.model_to_rest,
-            None => self.model_to_rest,
-        };
+        let to_frame = self.to_frame();
         let made = parts.iter().map(|(name, part)| {
             let made = Part::new("", mesh.clone(), part.material.clone());
             let made = made.expect("a material that fitted the same shape");

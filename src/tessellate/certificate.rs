@@ -42,7 +42,9 @@ pub struct Certificate {
     pub triangles_in: usize,
     /// Number of triangles of the photosurface.
     pub triangles_out: usize,
-    /// The fewest triangles, each inside a triangle at rest, with which the gap can be within the tolerance by theory.
+    /// The fewest triangles with which the mesh can be within the tolerance by theory: each inside a triangle at rest; or of
+    /// a round shape without a resolution, with corners on its true surface, an integral with a numerical error of about 1
+    /// per cent.
     pub minimum_triangles: f64,
     /// The ratio `triangles_out / minimum_triangles`.
     pub ratio: f64,

@@ -322,6 +322,7 @@ mod tests {
                         }
                     }
                     assert!(volume > 0.0);
+                    assert!(body.triangles.len() >= shape.coarsest_curved());
                 }
             }
         }
