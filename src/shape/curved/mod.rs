@@ -3,6 +3,11 @@
 //! A `body` is a closed surface of a few smooth `piece`s that meet at circular rims. A spot is a place on it. `texture`
 //! says where a spot lies on a picture.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "corners, sides and axes share one index"
+)]
+
 mod body;
 mod piece;
 mod texture;

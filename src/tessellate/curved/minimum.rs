@@ -13,7 +13,7 @@
 use glam::{DVec2, DVec3};
 
 use super::metric::density;
-use super::rims::divided_rims;
+use super::rims::chords_of_rims;
 use super::sight::About;
 use super::sight::Sight;
 use crate::shape::{Piece, Shape, Spot};
@@ -42,7 +42,7 @@ pub(crate) struct Needed {
 /// How many triangles a round shape needs.
 pub(crate) fn needed(shape: &Shape, sight: &Sight, about: About) -> Needed {
     let pieces = &shape.pieces(about == About::Points)[..];
-    let (divided, chords) = divided_rims(pieces, std::slice::from_ref(sight), usize::MAX >> 1);
+    let chords = chords_of_rims(pieces, sight);
     let mut needed = Needed {
         least: 0.0,
         error: 0.0,
@@ -58,10 +58,10 @@ pub(crate) fn needed(shape: &Shape, sight: &Sight, about: About) -> Needed {
             Piece::Tube { .. } => 14.0,
             Piece::Ball { .. } | Piece::Globe { .. } => 4.0,
         };
-        let least = of_rims(&|rim| chords[rim].max(3.0));
+        let least = of_rims(&|rim| chords[rim][0].max(3.0));
         needed.least += integral.sums[0].max(least);
         needed.error += integral.errors[0];
-        needed.predicted += MADE * integral.sums[1] + of_rims(&|rim| divided[rim].len() as f64);
+        needed.predicted += MADE * integral.sums[1] + of_rims(&|rim| chords[rim][1]);
     }
     needed
 }

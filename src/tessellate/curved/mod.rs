@@ -8,6 +8,11 @@
 //! Certificates use the fewest triangles of `minimum`. The triangulation is tested here; files still have round shapes of
 //! one resolution.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "corners, sides and axes share one index"
+)]
+
 mod bent;
 mod change;
 mod chart;

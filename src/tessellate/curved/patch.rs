@@ -118,7 +118,11 @@ impl Patch {
         let second_change = [0, 1, 2].map(|k| {
             m_size * self.change[k]
                 + m_change * self.second[k].length()
-                + factor.abs() * self.distance_change[k]
+                + if factor == 0.0 {
+                    0.0
+                } else {
+                    factor.abs() * self.distance_change[k]
+                }
         });
         let first_change = [0, 1].map(|k| {
             let of = |k: usize| second[k].abs() + second_change[k];

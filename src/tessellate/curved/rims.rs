@@ -15,27 +15,31 @@ const MOST_LOOKS: usize = 4096;
 /// How much the number of chords may change between two looks, as a part of a chord or of their number until there.
 const SMOOTH: f64 = 0.25;
 
-/// The turns of the vertices on each rim of a round shape, and the fewest chords that theory allows for it.
-pub(super) fn divided_rims(
-    pieces: &[Piece],
-    sights: &[Sight],
-    most: usize,
-) -> (Vec<Vec<f64>>, Vec<f64>) {
+/// The turns of the vertices on each rim of a round shape, at most `most` of them.
+pub(super) fn divided_rims(pieces: &[Piece], sights: &[Sight], most: usize) -> Vec<Vec<f64>> {
     let rims = 1..=Body::rims(pieces) as u8;
-    let found = rims.map(|rim| {
-        let chords =
-            |aim: f64| move |turns: f64| chords_per_turn(&pieces[0], sights, rim, turns, aim);
-        let length = Lengths::new(chords(AIM));
-        let parts = (length.whole().ceil() as usize).clamp(LEAST_PARTS, most.max(LEAST_PARTS));
-        (length.equal_parts(parts), length.whole() * AIM.sqrt())
-    });
-    found.unzip()
+    rims.map(|rim| {
+        let lengths = Lengths::of_rim(pieces, sights, rim);
+        let parts = (lengths.whole() / AIM.sqrt()).ceil() as usize;
+        lengths.equal_parts(parts.clamp(LEAST_PARTS, most.max(LEAST_PARTS)))
+    })
+    .collect()
+}
+
+/// The fewest chords that theory allows for each rim, and about how many there will be.
+pub(super) fn chords_of_rims(pieces: &[Piece], sight: &Sight) -> Vec<[f64; 2]> {
+    let rims = 1..=Body::rims(pieces) as u8;
+    rims.map(|rim| {
+        let whole = Lengths::of_rim(pieces, std::slice::from_ref(sight), rim).whole();
+        [whole, (whole / AIM.sqrt()).ceil().max(LEAST_PARTS as f64)]
+    })
+    .collect()
 }
 
 /// How many chords a whole turn of a rim would need if it were everywhere like at one place.
 ///
 /// A chord is an eighth of the second derivative from its arc, as far as that is across the arc.
-fn chords_per_turn(piece: &Piece, sights: &[Sight], rim: u8, turns: f64, aim: f64) -> f64 {
+fn chords_per_turn(piece: &Piece, sights: &[Sight], rim: u8, turns: f64) -> f64 {
     let spot = Spot::on_rim(turns, rim);
     let jet = piece.jet(piece.parameters(&spot));
     let of_sight = |sight: &Sight| {
@@ -50,7 +54,7 @@ fn chords_per_turn(piece: &Piece, sights: &[Sight], rim: u8, turns: f64, aim: f6
         let (along, bent) = (seen(first).normalize_or_zero(), seen(second) + slid);
         let aside = (bent - along * along.dot(bent)).length();
         let allowed = sight.allowed_at(sight.seen_at(offset).length());
-        (aside / (8.0 * aim * allowed)).sqrt()
+        (aside / (8.0 * allowed)).sqrt()
     };
     let most = sights
         .iter()
@@ -66,6 +70,10 @@ struct Lengths {
 }
 
 impl Lengths {
+    fn of_rim(pieces: &[Piece], sights: &[Sight], rim: u8) -> Self {
+        Self::new(|turns| chords_per_turn(&pieces[0], sights, rim, turns))
+    }
+
     fn new(density: impl Fn(f64) -> f64) -> Self {
         let mut looks: Vec<(f64, f64)> = (0..=LOOKS)
             .map(|k| k as f64 / LOOKS as f64)

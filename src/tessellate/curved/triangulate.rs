@@ -77,7 +77,7 @@ type BoundsOf = HashMap<usize, Vec<f64>>;
 
 /// The net for a task, with its bounds; the number of triangles where it has more than `most`.
 fn within(task: Task<'_>, most: usize) -> Result<(Net<'_>, BoundsOf), usize> {
-    let (rims, _) = divided_rims(task.pieces, task.sights, most);
+    let rims = divided_rims(task.pieces, task.sights, most);
     let mut net = Net::new(&Body::new(task.pieces, &rims), task);
     let is_coarsest = net.triangles.len();
     // A little more may be taken away again.
