@@ -8,6 +8,7 @@ from pathlib import Path
 
 import cloudpickle
 from distributed import Client, LocalCluster
+from distributed.comm import CommClosedError
 
 import job
 import worker
@@ -20,6 +21,7 @@ STRIKES = 2
 
 # Errors of connections and of cancelled work, all of which mean: once more.
 LOST = (OSError, TimeoutError, RuntimeError)
+WIRE_LOST = "connection to the scheduler was lost, tried again"
 
 
 class Sent:
@@ -166,7 +168,7 @@ class Farm:
 
     def reconnect(self, begun):
         for chunk in begun:
-            chunk.note("connection to the scheduler was lost, tried again")
+            chunk.note(WIRE_LOST)
         self.close()
         self.connect()
 
@@ -208,9 +210,11 @@ class Farm:
         if status == "pending":
             return False
         if status in ("cancelled", "lost"):
-            return self.again(chunk, "connection to the scheduler was lost, tried again", counts=False)
+            return self.again(chunk, WIRE_LOST, counts=False)
         try:
             told = chunk.future.result(timeout=self.options.patience)
+        except CommClosedError:  # The wire was cut while the result was on its way.
+            return self.again(chunk, WIRE_LOST, counts=False)
         except Exception as error:  # Whatever went wrong there, the work is still to be done.
             killed = type(error).__name__ == "KilledWorker"
             words = "its workers were lost again and again" if killed else f"{type(error).__name__}: {error}"
