@@ -28,6 +28,19 @@ impl Net<'_> {
         triangle
     }
 
+    /// The half-edges beyond the two triangles at an edge: of an edge from `a` to `b` between `c` and `d` those beyond the
+    /// sides `bc`, `ca`, `ad` and `db`.
+    fn beyond(&self, half_edge: u32) -> [u32; 4] {
+        let twin = self.twin(half_edge);
+        let sides = [
+            next(half_edge),
+            previous(half_edge),
+            next(twin),
+            previous(twin),
+        ];
+        sides.map(|side| self.twin(side))
+    }
+
     /// The spot in the middle of an edge.
     fn middle(&self, half_edge: u32) -> Spot {
         let (start, end) = (self.start(half_edge), self.end(half_edge));
@@ -69,13 +82,7 @@ impl Net<'_> {
         let (t0, t1) = (triangle_of(half_edge), triangle_of(twin));
         let (a, b) = (self.start(half_edge), self.start(twin));
         let (c, d) = (self.start(previous(half_edge)), self.start(previous(twin)));
-        let [bc, ca, ad, db] = [
-            next(half_edge),
-            previous(half_edge),
-            next(twin),
-            previous(twin),
-        ]
-        .map(|e| self.twin(e));
+        let [bc, ca, ad, db] = self.beyond(half_edge);
         let m = self.add(self.middle(half_edge), self.of[t0]);
         self.put(t0, [a, m, c]);
         self.put(t1, [b, m, d]);
@@ -135,13 +142,7 @@ impl Net<'_> {
     pub(super) fn turn(&mut self, half_edge: u32, made: [[u32; 3]; 2]) -> [usize; 2] {
         let twin = self.twin(half_edge);
         let (t0, t1) = (triangle_of(half_edge), triangle_of(twin));
-        let [bc, ca, ad, db] = [
-            next(half_edge),
-            previous(half_edge),
-            next(twin),
-            previous(twin),
-        ]
-        .map(|e| self.twin(e));
+        let [bc, ca, ad, db] = self.beyond(half_edge);
         self.put(t0, made[0]);
         self.put(t1, made[1]);
         let at = |triangle: usize, k: usize| (3 * triangle + k) as u32;
@@ -159,13 +160,7 @@ impl Net<'_> {
         let (gone, kept) = (self.start(half_edge), self.end(half_edge));
         let star = self.star(gone);
         let removed = [triangle_of(half_edge), triangle_of(twin)];
-        let [bc, ca, ad, db] = [
-            next(half_edge),
-            previous(half_edge),
-            next(twin),
-            previous(twin),
-        ]
-        .map(|e| self.twin(e));
+        let [bc, ca, ad, db] = self.beyond(half_edge);
         let mut changed = vec![];
         for half_edge in star {
             let triangle = triangle_of(half_edge);
