@@ -60,3 +60,30 @@ pub(super) fn certificate(
         _ => Certificate::of_lengths(tolerance.length, bounds, counts),
     }
 }
+
+/// The certificate of a round shape with vertices on the exact surface: `bounds` holds for each triangle that on its
+/// distance from the photosurface, a length in the observer's frame.
+pub(super) fn of_curved(
+    tolerance: &StepTolerance,
+    mesh: &Mesh,
+    seen: &MappedMesh,
+    around: Option<(DVec3, DVec3)>,
+    bounds: &[f64],
+    counts: Counts,
+) -> Certificate {
+    let rounding = tolerance.rounding(mesh, &seen.extremes, around, 0.0);
+    match (tolerance.tolerance.unit(), tolerance.tolerance.number()) {
+        (Unit::Degrees, degrees) => {
+            Certificate::of_seen_angles(degrees, &seen.mesh, bounds, rounding, counts)
+        }
+        _ => {
+            let bounds = Bounds {
+                gap: bounds.iter().copied().fold(0.0, f64::max),
+                deviation: 0.0,
+                curvature: 0.0,
+                rounding,
+            };
+            Certificate::of_lengths(tolerance.length, bounds, counts)
+        }
+    }
+}

@@ -264,6 +264,39 @@ impl StepTolerance {
         CURVATURE_SHARE * max_deviation
     }
 
+    /// How far the triangles of a round shape may be from its photosurface: what rounding leaves of the tolerance aimed at.
+    /// `mesh` is the shape as it was placed, with these extremes.
+    pub(super) fn allowed_of_curved(&self, mesh: &Mesh, seen: &Extremes) -> Allowed {
+        // The box around the exact shape is a little larger.
+        let around = self.box_of_all_steps.or_else(|| seen.bounds());
+        let rounding = 1.01 * self.rounding(mesh, seen, around, 0.0);
+        match (self.aimed.unit(), self.aimed.number()) {
+            (Unit::Degrees, degrees) => {
+                // (bound + rounding) / (distance - bound - rounding) <= s, solved for the bound.
+                let s = degrees.to_radians().sin();
+                Allowed::Share {
+                    share: ROOM * s / (1.0 + s),
+                    less: rounding,
+                    least: s * MIN_DISTANCE_UNTOUCHED * diagonal(std::slice::from_ref(seen)),
+                }
+            }
+            _ => {
+                let left = self.aimed_length - rounding;
+                Allowed::Length(ROOM * left.max(MIN_GAP_SHARE * self.aimed_length))
+            }
+        }
+    }
+
+    /// The smallest distance at which any place of a round shape is seen, or less; `mesh` is the shape as it was placed.
+    pub(super) fn nearest_of_curved(&self, mesh: &Mesh) -> f64 {
+        let observer = self.view.observer_rest();
+        let distances = (0..mesh.triangle_count()).map(|index| {
+            let offsets = mesh.corners_of(index).map(|corner| corner - observer);
+            self.view.seen_distance(self.nearest(offsets))
+        });
+        distances.fold(f64::INFINITY, f64::min)
+    }
+
     /// The place of a facet nearest to the observer, or a place nearer than any of the curved surface that the facet
     /// stands for; like the `offsets` of its corners, in the rest frame and relative to the observer.
     pub(super) fn nearest(&self, offsets: [DVec3; 3]) -> DVec3 {

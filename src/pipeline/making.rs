@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::SurfaceOptions;
 use super::certifying::{Measured, certificate};
+use super::curved::make_curved;
 use super::limits::Limits;
 use super::mapped_mesh::MappedMesh;
 use super::plan::{Draft, Plan};
@@ -38,6 +39,12 @@ struct Uncertified<'a> {
 
 /// Carries out a plan: refines where that is wanted, maps, and certifies.
 pub(super) fn make(mut plan: Plan<'_>, wanted: SurfaceOptions) -> Vec<Surface<'_>> {
+    if plan.is_curved {
+        match make_curved(&plan) {
+            Some(surface) => return vec![surface],
+            None => plan.take_facets(wanted),
+        }
+    }
     let Draft {
         parts,
         seen,

@@ -5,6 +5,7 @@ mod blurred;
 mod bounds;
 mod budget;
 mod certifying;
+mod curved;
 mod error;
 mod facts;
 mod forecast;

@@ -186,7 +186,9 @@ impl Shaped {
     /// Number of triangles of the shape's coarsest form; `parts` are the parts as placed.
     pub(super) fn min_triangles(&self, parts: &[(String, Part)]) -> u64 {
         let coarsest = self.shape.within(f64::INFINITY);
-        if coarsest == self.placed {
+        if self.shape.is_curved() {
+            self.shape.coarsest_curved() as u64
+        } else if coarsest == self.placed {
             triangle_count(parts)
         } else {
             coarsest.triangle_count()
@@ -207,14 +209,6 @@ impl Shaped {
         shape
     }
 
-    /// From the shape's own frame to that of the parts.
-    pub(super) fn to_frame(&self) -> DAffine3 {
-        match &self.rest_to_stand_in {
-            Some(to_stand_in) => *to_stand_in * self.model_to_rest,
-            None => self.model_to_rest,
-        }
-    }
-
     /// The parts of the same shape with another resolution; names and materials are those of `parts`.
     pub(super) fn parts_like(
         &self,
@@ -222,13 +216,25 @@ impl Shaped {
         parts: &[(String, Part)],
     ) -> Vec<(String, Part)> {
         let mesh = shape.mesh().expect("coarser than what a shape may have");
-        let to_frame = self.to_frame();
-        let made = parts.iter().map(|(name, part)| {
-            let made = Part::new("", mesh.clone(), part.material.clone());
-            let made = made.expect("a material that fitted the same shape");
-            (name.clone(), made.transformed(&to_frame))
-        });
-        made.collect()
+        let parts = parts.iter();
+        parts
+            .map(|(name, part)| (name.clone(), self.part_of(mesh.clone(), part)))
+            .collect()
+    }
+
+    /// A mesh of the shape in the frame of the parts, with the material of one of them.
+    pub(super) fn part_of(&self, mesh: Mesh, like: &Part) -> Part {
+        let made = Part::new("", mesh, like.material.clone());
+        let made = made.expect("a material that fitted the same shape");
+        made.transformed(&self.to_frame())
+    }
+
+    /// From the shape's own frame to that of the parts.
+    pub(super) fn to_frame(&self) -> DAffine3 {
+        match &self.rest_to_stand_in {
+            Some(to_stand_in) => *to_stand_in * self.model_to_rest,
+            None => self.model_to_rest,
+        }
     }
 }
 

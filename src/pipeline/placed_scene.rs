@@ -289,7 +289,9 @@ impl PlacedScene {
     ) -> impl Iterator<Item = Unrefined<'_>> {
         let objects = self.scene.objects().iter().zip(&self.objects);
         objects.map(move |(object, placed_object)| {
-            self.plan(object, placed_object, step, wanted).unrefined()
+            let shown = self.model_view(object, step).expect(A_STEP);
+            let tolerance = self.scene.tolerance(object);
+            Plan::of_facets(placed_object, shown, tolerance, wanted).unrefined()
         })
     }
 

@@ -8,7 +8,7 @@ use super::SurfaceOptions;
 use super::limits::{Limits, StepTolerance};
 use super::mapped_mesh::MappedMesh;
 use super::placed_object::{PlacedObject, Shaped};
-use crate::light_cone::{ModelView, View};
+use crate::light_cone::{Extremes, ModelView, View};
 use crate::material::Part;
 use crate::scene::{Tolerance, Unit};
 use crate::shape::Shape;
@@ -29,6 +29,8 @@ pub(super) struct Plan<'a> {
     pub(super) granted: u64,
     /// The parts as they were placed, as seen.
     seen: Vec<MappedMesh>,
+    /// True for a round shape that is triangulated as an exact surface.
+    pub(super) is_curved: bool,
 }
 
 /// Parts of one object at rest and as seen, before any refinement, and the limits of their errors.
@@ -58,6 +60,28 @@ impl<'a> Plan<'a> {
         wanted: SurfaceOptions,
         granted: u64,
     ) -> Self {
+        let is_curved = wanted.subdivide && placed_object.curved().is_some();
+        Self::with_form(placed_object, shown, tolerance, wanted, granted, is_curved)
+    }
+
+    /// The same with facets for a round shape too: all of one resolution.
+    pub(super) fn of_facets(
+        placed_object: &'a PlacedObject,
+        shown: ModelView,
+        tolerance: Tolerance,
+        wanted: SurfaceOptions,
+    ) -> Self {
+        Self::with_form(placed_object, shown, tolerance, wanted, u64::MAX, false)
+    }
+
+    fn with_form(
+        placed_object: &'a PlacedObject,
+        shown: ModelView,
+        tolerance: Tolerance,
+        wanted: SurfaceOptions,
+        granted: u64,
+        is_curved: bool,
+    ) -> Self {
         let (placed_object, view) = placed_object.stand_in(&shown);
         let seen = seen_parts(&view, &placed_object.parts);
         // An absolute tolerance does not depend on how large the object is seen.
@@ -76,22 +100,37 @@ impl<'a> Plan<'a> {
             shape: None,
             granted,
             seen,
+            is_curved,
         };
-        if let Some(shaped) = &plan.placed_object.shaped {
-            let mesh = plan.placed_object.parts[0].1.mesh();
-            let max_deviation = || match shaped.deviation {
-                // A flat shape has no other distance from itself.
-                0.0 => f64::INFINITY,
-                _ => plan.tolerance.max_deviation(mesh, &plan.seen),
-            };
-            let shape = match wanted.subdivide {
-                true => shaped.within(max_deviation(), plan.max_triangles(granted)),
-                false => shaped.shape.clone(),
-            };
-            plan.tolerance.deviation = shape.deviation() * shaped.largest_scale;
-            plan.shape = Some(shape).filter(|shape| *shape != shaped.placed);
+        if !is_curved {
+            plan.take_facets(wanted);
         }
         plan
+    }
+
+    /// Gives a shape, a round one too, facets of one resolution, as the tolerance asks for.
+    pub(super) fn take_facets(&mut self, wanted: SurfaceOptions) {
+        self.is_curved = false;
+        let Some(shaped) = &self.placed_object.shaped else {
+            return;
+        };
+        let mesh = self.placed_object.parts[0].1.mesh();
+        let max_deviation = || match shaped.deviation {
+            // A flat shape has no other distance from itself.
+            0.0 => f64::INFINITY,
+            _ => self.tolerance.max_deviation(mesh, &self.seen),
+        };
+        let shape = match wanted.subdivide {
+            true => shaped.within(max_deviation(), self.max_triangles(self.granted)),
+            false => shaped.shape.clone(),
+        };
+        self.tolerance.deviation = shape.deviation() * shaped.largest_scale;
+        self.shape = Some(shape).filter(|shape| *shape != shaped.placed);
+    }
+
+    /// The extremes, as seen, of the first part as it was placed.
+    pub(super) fn extremes_as_placed(&self) -> &Extremes {
+        &self.seen[0].extremes
     }
 
     /// The observer's view of what stands for the object at this step.

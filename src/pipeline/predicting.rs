@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::SurfaceOptions;
 use super::certifying::{Measured, certificate};
+use super::curved::predict_curved;
 use super::limits::{Limits, MIN_GAP_SHARE, StepTolerance, shrunk};
 use super::mapped_mesh::MappedMesh;
 use super::placed_object::spread;
@@ -40,6 +41,9 @@ type Facet = (f64, [DVec3; 3]);
 ///
 /// `weights` holds for each part the number of triangles that each of its own is a sample of.
 pub(super) fn predict(mut plan: Plan<'_>, wanted: SurfaceOptions, weights: &[f64]) -> Predicted {
+    if let Some(predicted) = predict_curved(&plan) {
+        return predicted;
+    }
     let facets = plan.shape.as_ref().map_or(0, Shape::triangle_count);
     let (draft, each) = if facets > MAX_FACETS_MADE {
         let as_placed = plan.placed_object.parts[0].1.mesh().triangles().len();

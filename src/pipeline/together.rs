@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use super::SurfaceOptions;
 use super::certifying::{Measured, certificate};
+use super::curved::make_curved_together;
 use super::limits::{Limits, bounds};
 use super::making::{Surface, refine_parts};
 use super::mapped_mesh::MappedMesh;
@@ -29,6 +30,12 @@ pub(super) fn make_together<'a>(
     mut plans: Vec<Plan<'a>>,
     wanted: SurfaceOptions,
 ) -> Vec<Vec<Surface<'a>>> {
+    if plans.first().is_some_and(|plan| plan.is_curved) {
+        match make_curved_together(placed_object, &mut plans) {
+            Some(surfaces) => return vec![surfaces],
+            None => plans.iter_mut().for_each(|plan| plan.take_facets(wanted)),
+        }
+    }
     share_finest_shape(&mut plans);
     let Some(first) = plans.first() else {
         return vec![];

@@ -7,13 +7,6 @@
 mod appearance;
 mod band;
 mod checker;
-#[cfg_attr(
-    not(test),
-    allow(
-        dead_code,
-        reason = "exports use of it the fewest triangles by theory so far"
-    )
-)]
 mod curved;
 mod deviation;
 mod error;

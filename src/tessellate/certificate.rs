@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use super::stretch::local_stretch;
-use super::triangle_gap;
+use super::{nearest_point, triangle_gap};
 use crate::light_cone::{Extremes, View};
 use crate::mesh::Mesh;
 use crate::scene::Unit;
@@ -27,10 +27,10 @@ pub struct Certificate {
     /// The tolerance that was asked for.
     pub tolerance: f64,
     /// Proven bound on the distance between the mapped flat triangles and the photosurface of the flat triangles at
-    /// rest.
+    /// rest; of a round shape without a resolution of its own that between its triangles and its true photosurface.
     pub gap: f64,
     /// Proven bound on the distance between the photosurface of the triangles at rest and that of the curved surface
-    /// that they stand for.
+    /// that they stand for; zero where `gap` is about the curved surface itself.
     pub curvature: f64,
     /// Proven bound on the distance that rounding adds, in the computation and in the numbers of the file.
     pub rounding: f64,
@@ -38,7 +38,7 @@ pub struct Certificate {
     pub total: f64,
     /// Whether the total is within the tolerance.
     pub complete: bool,
-    /// Number of triangles of the mesh at rest.
+    /// Number of triangles of the mesh at rest; of a round shape without a resolution those of its coarsest form.
     pub triangles_in: usize,
     /// Number of triangles of the photosurface.
     pub triangles_out: usize,
@@ -187,6 +187,25 @@ impl Certificate {
         }
     }
 
+    /// The same for triangles as `seen`, each with a bound on its distance from the photosurface, a length in the observer's
+    /// frame.
+    pub(crate) fn of_seen_angles(
+        degrees: f64,
+        seen: &Mesh,
+        bounds: &[f64],
+        rounding: f64,
+        counts: Counts,
+    ) -> Self {
+        let of_each = bounds.iter().enumerate().map(|(index, &bound)| {
+            let nearest = nearest_point(seen.corners_of(index)).length() * (1.0 - 1e-12);
+            let left = nearest - bound - rounding;
+            [bound, rounding, bound + rounding].map(|length| angle_of(length, left))
+        });
+        let larger = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[k].max(b[k]));
+        let [gap, rounding, total] = of_each.fold([0.0; 3], larger);
+        Self::new(Unit::Degrees, degrees, [gap, 0.0, rounding, total], counts)
+    }
+
     fn new(unit: Unit, tolerance: f64, bounds: [f64; 4], counts: Counts) -> Self {
         let [gap, curvature, rounding, total] = bounds;
         let total = total * UP;
@@ -208,6 +227,15 @@ impl Certificate {
             minimum_triangles,
             ratio: finite(counts.triangles_out as f64 / minimum_triangles),
         }
+    }
+}
+
+/// The largest angle, in degrees, by which a displacement by a length is seen if both places are at least `nearest` away.
+fn angle_of(length: f64, nearest: f64) -> f64 {
+    match length {
+        0.0 => 0.0,
+        _ if length <= nearest => (length / nearest).asin().to_degrees() * UP,
+        _ => 180.0,
     }
 }
 

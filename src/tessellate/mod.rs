@@ -14,13 +14,6 @@ mod along;
 mod ceiling;
 mod certificate;
 mod chart;
-#[cfg_attr(
-    not(test),
-    allow(
-        dead_code,
-        reason = "exports use of it the fewest triangles by theory so far"
-    )
-)]
 mod curved;
 mod edge;
 mod edges;
@@ -40,7 +33,7 @@ mod survey;
 pub(crate) use allowance::Allowance;
 pub(crate) use certificate::{Bounds, Counts, Singles, rounding_bound};
 pub use certificate::{Certificate, Precision};
-pub(crate) use curved::{About, Allowed, Sight, needed};
+pub(crate) use curved::{About, Allowed, Sight, needed, triangulate};
 pub use gap::{edge_gap, triangle_gap, triangle_gap_place};
 use minimum::minimum_triangles;
 pub(crate) use minimum::predicted_pieces;

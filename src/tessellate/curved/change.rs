@@ -1,5 +1,8 @@
 //! Changes of a net: an edge divided, a vertex added or taken away, an edge turned.
 
+use glam::DVec2;
+
+use super::bent::{Arc, Bent};
 use super::estimate::Estimate;
 use super::net::{NONE, Net, next, previous, triangle_of};
 use crate::shape::{Piece, Spot};
@@ -78,12 +81,50 @@ impl Net<'_> {
 
     /// Divides an edge in its middle; returns the four triangles at the new vertex.
     pub(super) fn split(&mut self, half_edge: u32) -> [usize; 4] {
+        let middle = self.middle(half_edge);
+        self.split_at(half_edge, middle)
+    }
+
+    /// Divides an edge at a spot that the observer sees next to the middle of the edge, as seen; returns the four triangles.
+    pub(super) fn split_as_seen(&mut self, half_edge: u32, number: usize) -> [usize; 4] {
+        let middle = self.middle(half_edge);
+        if self.is_rim(half_edge) {
+            return self.split_at(half_edge, middle);
+        }
+        let triangle = triangle_of(half_edge);
+        let corners = self.triangles[triangle];
+        let k = (half_edge as usize + 2) % 3;
+        let mut fixed = [Some(Arc::OfFacet); 3];
+        fixed[k] = None;
+        let facet = self.facet(corners, self.of[triangle]);
+        let sight = &self.task.sights[number];
+        let bent = Bent::new(facet, sight, self.seen_by(number, corners), fixed);
+        let [_, x, y] = [0, 1, 2].map(|corner| if corner == k { 0.0 } else { 0.5 });
+        let piece = self.piece_of(triangle);
+        let spot = piece.spot_near(bent.place(DVec2::new(x, y)));
+        let [a, b, c, d] = [
+            half_edge,
+            next(half_edge),
+            previous(half_edge),
+            previous(self.twin(half_edge)),
+        ]
+        .map(|e| self.start(e));
+        let of = self.of[triangle];
+        let m = self.add(spot, of);
+        let is_sound = [[a, m, c], [m, b, c], [b, m, d], [m, a, d]]
+            .iter()
+            .all(|&made| self.may_be(made, of));
+        self.take_last_vertex();
+        self.split_at(half_edge, if is_sound { spot } else { middle })
+    }
+
+    fn split_at(&mut self, half_edge: u32, spot: Spot) -> [usize; 4] {
         let twin = self.twin(half_edge);
         let (t0, t1) = (triangle_of(half_edge), triangle_of(twin));
         let (a, b) = (self.start(half_edge), self.start(twin));
         let (c, d) = (self.start(previous(half_edge)), self.start(previous(twin)));
         let [bc, ca, ad, db] = self.beyond(half_edge);
-        let m = self.add(self.middle(half_edge), self.of[t0]);
+        let m = self.add(spot, self.of[t0]);
         self.put(t0, [a, m, c]);
         self.put(t1, [b, m, d]);
         let t2 = self.push([m, b, c], self.of[t0]);

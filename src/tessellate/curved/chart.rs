@@ -87,6 +87,12 @@ impl Facet {
         }
     }
 
+    /// Whether a corner is the tip of a cone.
+    pub(super) fn has_tip(&self) -> bool {
+        let is_unrolled = matches!(self.chart, Chart::Unrolled { .. });
+        is_unrolled && self.corners.iter().any(|q| q.y == 0.0)
+    }
+
     /// The parameters at these weights of the corners.
     pub(super) fn at(&self, weights: [f64; 3]) -> DVec2 {
         let [a, b, c] = self.corners;

@@ -7,6 +7,10 @@ use super::quadratic;
 use super::sight::About;
 use super::sight::Sight;
 
+/// How far the middle of a side may slide along the surface, in weights summed over the corners: what slides farther cannot
+/// be proven.
+const MOST_SLIDE: f64 = 0.5;
+
 /// The estimated distance of a triangle from the photosurface, and how much of it each side makes, opposite each corner;
 /// as fractions of the distance that is allowed.
 #[derive(Clone, Copy, Debug, Default)]
@@ -60,8 +64,25 @@ impl Estimate {
                 let heights = bulges.map(|bulge| normal.dot(bulge));
                 // Sides alone would make this of the centre.
                 let beyond = normal.dot(center - sum * (4.0 / 9.0)).abs();
-                whole = whole.max(quadratic::largest([0.0; 3], heights) + beyond);
+                whole = whole.max(match facet.has_tip() {
+                    // The error grows with the distance from the tip.
+                    true => heights
+                        .iter()
+                        .fold(normal.dot(center).abs(), |a, b| a.max(b.abs())),
+                    false => quadratic::largest([0.0; 3], heights) + beyond,
+                });
                 sides = [0, 1, 2].map(|k| sides[k].max(heights[k].abs()));
+                // Same weights are near enough where places do not slide farther than is allowed.
+                let slides = slides(seen, normal, bulges);
+                let slides =
+                    [0, 1, 2].map(|k| (slides[k] * allowed / MOST_SLIDE).min(bulges[k].length()));
+                whole = slides.into_iter().fold(whole, f64::max);
+                let most = slides.into_iter().fold(0.0, f64::max);
+                let lengths = bulges.map(|bulge| bulge.length());
+                let longest = lengths.into_iter().fold(0.0, f64::max);
+                if longest > 0.0 {
+                    sides = [0, 1, 2].map(|k| sides[k].max(most * lengths[k] / longest));
+                }
             }
             About::Points => {
                 let axis = center.normalize_or_zero();
@@ -82,4 +103,11 @@ impl Estimate {
             sides: sides.map(number),
         }
     }
+}
+
+/// How far the middle of each side slides in the triangle's plane, in weights, summed over the three corners.
+fn slides(seen: [DVec3; 3], normal: DVec3, bulges: [DVec3; 3]) -> [f64; 3] {
+    let area = (seen[1] - seen[0]).cross(seen[2] - seen[0]).length();
+    let gradients = [0, 1, 2].map(|k| normal.cross(seen[(k + 2) % 3] - seen[(k + 1) % 3]) / area);
+    bulges.map(|bulge| gradients.iter().map(|g| g.dot(bulge).abs()).sum())
 }

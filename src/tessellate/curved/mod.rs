@@ -4,9 +4,6 @@
 //! starts with few of them, with `rims` divided already; a `front` adds vertices, `refine` divides what that has left and
 //! takes away and moves vertices. `chart`, `bent` and `patch` describe the curved patch over a triangle, `proof` bounds the
 //! distance of both. `triangulate` puts it together, and `minimum` says how many triangles are needed.
-//!
-//! Certificates use the fewest triangles of `minimum`. The triangulation is tested here; files still have round shapes of
-//! one resolution.
 
 #![allow(
     clippy::needless_range_loop,
@@ -31,3 +28,4 @@ mod triangulate;
 
 pub(crate) use minimum::needed;
 pub(crate) use sight::{About, Allowed, Sight};
+pub(crate) use triangulate::triangulate;

@@ -1,5 +1,7 @@
 //! A closed net of triangles with corners on a round shape: who is beside whom, and how good each triangle is.
 
+use std::collections::HashSet;
+
 use std::collections::HashMap;
 
 use glam::{DMat3, DVec2, DVec3};
@@ -49,6 +51,8 @@ pub(super) struct Net<'a> {
     pub(super) estimates: Vec<Estimate>,
     /// False for triangles that were taken away.
     pub(super) alive: Vec<bool>,
+    /// The ends of edges that were divided, the smaller one first: no turned edge may bring them back.
+    pub(super) divided: HashSet<[u32; 2]>,
 }
 
 pub(super) fn next(half_edge: u32) -> u32 {
@@ -149,6 +153,7 @@ impl<'a> Net<'a> {
             twins: vec![NONE; 3 * body.triangles.len()],
             estimates: vec![Estimate::default(); body.triangles.len()],
             alive: vec![true; body.triangles.len()],
+            divided: HashSet::new(),
         };
         for &spot in &body.spots {
             net.add(spot, 0);
@@ -176,6 +181,14 @@ impl<'a> Net<'a> {
         self.seen.extend(seen);
         self.normals.extend(normals);
         (self.vertices.len() - 1) as u32
+    }
+
+    /// Takes the vertex that was added last away, of which no triangle is made.
+    pub(super) fn take_last_vertex(&mut self) {
+        self.vertices.pop();
+        let left = self.vertices.len() * self.task.sights.len();
+        self.seen.truncate(left);
+        self.normals.truncate(left);
     }
 
     /// The number of triangles.

@@ -149,13 +149,19 @@ impl Patch {
     /// The difference is half a mean of second derivatives along the ways from a place to the corners. The mean square of
     /// a coordinate's difference from its mean is at most a quarter of the square of its range.
     pub(super) fn bulge(&self, bend: &Bend) -> f64 {
-        let of = |k: usize| bend.second[k].abs() + bend.second_change[k];
-        let whole = self.over_box([0, 1, 2].map(of));
-        if whole <= bend.apart {
-            whole
-        } else {
-            bend.apart
+        match self.is_vague(bend) {
+            false => self.bent(bend),
+            true => bend.apart,
         }
+    }
+
+    /// Whether second derivatives tell less about the box than its size does, as at the tip of a cone.
+    pub(super) fn is_vague(&self, bend: &Bend) -> bool {
+        self.bent(bend) > bend.apart
+    }
+
+    fn bent(&self, bend: &Bend) -> f64 {
+        self.over_box([0, 1, 2].map(|k| bend.second[k].abs() + bend.second_change[k]))
     }
 
     /// An upper bound on the largest `|g.error|` of a part with these corners: the largest one that the second derivatives

@@ -269,7 +269,7 @@ impl<'a> Proof<'a> {
         self.is_graph(a, conditions, halvings - 1) && self.is_graph(b, conditions, halvings - 1)
     }
 
-    /// The halves of a part, whose longest side is divided: that which bends most.
+    /// The halves of a part, whose longest side is divided: that which bends most, where that is known.
     fn halves(&mut self, part: &[Corner; 3], patch: &Patch, bends: &[Bend]) -> [[Corner; 3]; 2] {
         let bent = |k: usize| {
             let side = part[(k + 2) % 3].at - part[(k + 1) % 3].at;
@@ -279,7 +279,7 @@ impl<'a> Proof<'a> {
                 .fold(0.0, f64::max)
         };
         let mut sizes = [0, 1, 2].map(bent);
-        if !sizes.iter().all(|size| size.is_finite()) {
+        if bends.iter().any(|bend| patch.is_vague(bend)) {
             sizes =
                 [0, 1, 2].map(|k| (part[(k + 2) % 3].offset - part[(k + 1) % 3].offset).length());
         }

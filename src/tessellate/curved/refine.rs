@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 use super::chart::Facet;
 use super::estimate::Estimate;
 use super::front::Turn;
-use super::net::{NONE, Net, Task, half_edges_of, next, previous, triangle_of};
+use super::net::{NONE, Net, half_edges_of, next, previous, triangle_of};
 use super::sight::About;
 use crate::shape::{Piece, Spot};
 
@@ -37,6 +37,10 @@ impl Net<'_> {
         }
         let made = self.turned(half_edge)?;
         let of = self.of[t0];
+        let [_, d, c] = made[0];
+        if self.divided.contains(&[c.min(d), c.max(d)]) {
+            return None;
+        }
         if !made.iter().all(|&corners| self.is_sound(corners, of)) {
             return None;
         }
@@ -61,15 +65,17 @@ impl Net<'_> {
         Some(turned)
     }
 
-    /// Turns edges, these and those beside turned ones; returns the triangles that have changed.
-    fn improve_around(&mut self, mut edges: Vec<u32>) -> Vec<usize> {
+    /// Turns edges, these and those beside turned ones, but none at the vertex `but`; returns the triangles that have changed.
+    fn improve_around(&mut self, mut edges: Vec<u32>, but: Option<u32>) -> Vec<usize> {
         let (mut changed, mut left) = (vec![], TURNS + edges.len());
         while let Some(half_edge) = edges.pop() {
             left -= 1;
             if left == 0 {
                 break;
             }
-            if !self.alive[triangle_of(half_edge)] {
+            let is_kept =
+                but.is_some_and(|v| self.start(half_edge) == v || self.end(half_edge) == v);
+            if is_kept || !self.alive[triangle_of(half_edge)] {
                 continue;
             }
             if let Some([t0, t1]) = self.improve(half_edge) {
@@ -113,46 +119,42 @@ impl Net<'_> {
             0,
             |worst, k| if sides[k] > sides[worst] { k } else { worst },
         );
-        let made = self.split((3 * triangle + (worst + 1) % 3) as u32);
+        let half_edge = (3 * triangle + (worst + 1) % 3) as u32;
+        let ends = [self.start(half_edge), self.end(half_edge)];
+        self.divided
+            .insert([ends[0].min(ends[1]), ends[0].max(ends[1])]);
+        let made = self.split(half_edge);
         made.into_iter().for_each(|triangle| self.update(triangle));
-        let changed = self.improve_around(half_edges_of(&made));
+        // Turned edges at the new vertex might make the same triangle again, and again.
+        let changed =
+            self.improve_around(half_edges_of(&made), Some(self.vertices.len() as u32 - 1));
         made.into_iter().chain(changed).collect()
     }
 
-    /// Divides the side of a triangle along which places slide most; returns the triangles that have changed. Whatever cannot
-    /// be proven becomes small enough for it in the end.
-    pub(super) fn cut(&mut self, triangle: usize) -> Vec<usize> {
-        let corners = self.triangles[triangle];
-        let task = Task {
-            about: About::Points,
-            ..self.task
-        };
-        let facet = self.facet(corners, self.of[triangle]);
-        let rims = self.rims_of(triangle);
-        let sights = task.sights.iter().enumerate();
-        let slides = sights.map(|(number, sight)| {
-            Estimate::new(
-                &facet,
-                sight,
-                task.about,
-                self.seen_by(number, corners),
-                [None; 3],
-            )
-        });
-        let mut sides = slides.fold(self.estimates[triangle], Estimate::max).sides;
-        for k in 0..3 {
-            // Chords of rims are right already, unless nothing else is wrong.
-            sides[k] *= if rims[k] && self.estimates[triangle].sides[k] <= 1.0 {
-                0.5
-            } else {
-                1.0
-            };
+    /// Divides the side of a triangle that is seen longest; returns the triangles that have changed. Whatever cannot be proven
+    /// becomes small enough for it in the end, and round enough. `bound` is the bound of its distance as a fraction of what is
+    /// allowed.
+    pub(super) fn cut(&mut self, triangle: usize, (number, bound): (usize, f64)) -> Vec<usize> {
+        if self.estimates[triangle].whole > 1.0 {
+            return self.divide(triangle);
         }
+        let corners = self.triangles[triangle];
+        let rims = self.rims_of(triangle);
+        let sides = [0, 1, 2].map(|k| {
+            let lengths = self.task.sights.iter().enumerate().map(|(number, sight)| {
+                let seen = self.seen_by(number, corners);
+                (seen[(k + 2) % 3] - seen[(k + 1) % 3]).length() / sight.allowed(seen)
+            });
+            // Chords of rims are right already, unless they are what is wrong.
+            let Estimate { whole, sides } = self.estimates[triangle];
+            let is_right = rims[k] && sides[k] * bound <= whole;
+            lengths.fold(0.0, f64::max) * if is_right { 0.5 } else { 1.0 }
+        });
         let worst = (0..3).fold(
             0,
             |worst, k| if sides[k] > sides[worst] { k } else { worst },
         );
-        let made = self.split((3 * triangle + (worst + 1) % 3) as u32);
+        let made = self.split_as_seen((3 * triangle + (worst + 1) % 3) as u32, number);
         made.into_iter().for_each(|triangle| self.update(triangle));
         made.to_vec()
     }
@@ -187,7 +189,7 @@ impl Net<'_> {
             }
             if let Some((_, half_edge)) = best {
                 let changed = self.collapse(half_edge);
-                self.improve_around(half_edges_of(&changed));
+                self.improve_around(half_edges_of(&changed), None);
             }
         }
     }

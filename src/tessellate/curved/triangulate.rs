@@ -1,7 +1,7 @@
 //! The triangles of a round shape, with vertices on it, within a tolerance of its photosurface: made, proven, and repaired
 //! where the proof finds more than the estimate did.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -17,6 +17,10 @@ use crate::shape::{Body, LEAST_PARTS, Piece, Shape, Spot};
 
 /// How often triangles that are not proven are divided.
 const REPAIRS: usize = 40;
+
+/// How many times as many triangles as before there may be after each of refinement and repairs, and a few that do not count.
+const MOST_TIMES: usize = 3;
+const FEW: usize = 1_000;
 
 /// Room for the rounding of a bound.
 const UP: f64 = 1.0 + 1e-9;
@@ -35,13 +39,14 @@ pub(crate) struct Triangulated {
     pub(crate) bounds: Vec<Vec<f64>>,
 }
 
-/// The triangles of a round shape for all of these sights, at most `most` of them or those of the coarsest form.
+/// The triangles of a round shape for all of these sights, at most `most` of them or those of the coarsest form; `None` if
+/// one cannot be proven.
 pub(crate) fn triangulate(
     shape: &Shape,
     sights: &[Sight],
     about: About,
     most: u64,
-) -> Triangulated {
+) -> Option<Triangulated> {
     let pieces = shape.pieces(about == About::Points);
     let most = usize::try_from(most).unwrap_or(usize::MAX);
     let mut looser = 1.0;
@@ -53,7 +58,7 @@ pub(crate) fn triangulate(
             about,
         };
         match within(task, most) {
-            Ok((net, bounds)) => return assembled(shape, &net, bounds),
+            Ok(made) => return made.map(|(net, bounds)| assembled(shape, &net, bounds)),
             Err(count) => looser *= (count as f64 / most.max(1) as f64).max(LOOSER),
         }
     }
@@ -69,62 +74,69 @@ pub(crate) fn triangulate(
         },
     );
     let bounds = proven(&net, &(0..net.triangles.len()).collect::<Vec<_>>());
-    assembled(shape, &net, bounds.into_iter().collect())
+    let is_finite = bounds.values().flatten().all(|bound| bound.is_finite());
+    is_finite.then(|| assembled(shape, &net, bounds))
 }
 
 /// The bounds of each triangle, one for each sight.
 type BoundsOf = HashMap<usize, Vec<f64>>;
 
-/// The net for a task, with its bounds; the number of triangles where it has more than `most`.
-fn within(task: Task<'_>, most: usize) -> Result<(Net<'_>, BoundsOf), usize> {
+/// The net for a task, with its bounds, `None` if one of its triangles cannot be proven; the number of triangles where it
+/// has more than `most`.
+fn within(task: Task<'_>, most: usize) -> Result<Option<(Net<'_>, BoundsOf)>, usize> {
     let rims = divided_rims(task.pieces, task.sights, most);
     let mut net = Net::new(&Body::new(task.pieces, &rims), task);
     let is_coarsest = net.triangles.len();
     // A little more may be taken away again.
     let limit = most.saturating_add(most / 4).max(is_coarsest);
     net.advance(limit);
-    net.refine(limit);
+    let may_be = MOST_TIMES * net.triangles.len() + FEW;
+    net.refine(limit.min(may_be));
     if net.triangles.len() > limit {
         return Err(net.triangles.len().max(most + 1));
     }
-    net.tidy();
-    let mut bounds = BoundsOf::new();
-    let mut open: Vec<usize> = (0..net.triangles.len()).filter(|&t| net.alive[t]).collect();
-    for repair in 0..=REPAIRS {
-        let found = proven(&net, &open);
-        let failed: Vec<usize> = open
-            .iter()
-            .copied()
-            .filter(|t| !is_within(&net, *t, &found[t]))
-            .collect();
-        bounds.extend(found);
-        if failed.is_empty() || repair == REPAIRS || net.count() > most {
-            break;
-        }
-        let mut changed = vec![];
-        for triangle in failed {
-            // A neighbour's division may have changed it.
-            if !changed.contains(&triangle) {
-                changed.extend(net.cut(triangle));
-            }
-        }
-        changed.sort_unstable();
-        changed.dedup();
-        open = changed;
+    if net.triangles.len() > may_be {
+        return Ok(None);
     }
+    net.tidy();
+    let bounds = repaired(&mut net, most);
     match net.count() {
         count if count > most && count > is_coarsest => Err(count),
-        _ => Ok((net, bounds)),
+        _ => Ok(bounds.map(|bounds| (net, bounds))),
     }
 }
 
-/// Whether the bounds of a triangle are within what is allowed.
-fn is_within(net: &Net<'_>, triangle: usize, bounds: &[f64]) -> bool {
-    let corners = net.triangles[triangle];
-    let sights = net.task.sights.iter().enumerate().zip(bounds);
-    sights
-        .into_iter()
-        .all(|((number, sight), &bound)| bound <= sight.allowed(net.seen_by(number, corners)))
+/// The bounds of all triangles, after those that are not proven have been divided; `None` if some never are. Stops where
+/// there are more than `most`.
+fn repaired(net: &mut Net<'_>, most: usize) -> Option<BoundsOf> {
+    let mut bounds = BoundsOf::new();
+    let mut open: Vec<usize> = (0..net.triangles.len()).filter(|&t| net.alive[t]).collect();
+    let most = most.min(MOST_TIMES * open.len() + FEW);
+    for _ in 0..=REPAIRS {
+        let found = proven(net, &open);
+        let failed = open.iter().copied();
+        let failed: Vec<usize> = failed
+            .filter(|t| !(net.share(*t, &found[t]).1 <= 1.0))
+            .collect();
+        bounds.extend(found);
+        if failed.is_empty() {
+            return Some(bounds);
+        }
+        if net.count() > most {
+            break;
+        }
+        let mut changed = HashSet::new();
+        for triangle in failed {
+            // A neighbour's division may have changed it.
+            if !changed.contains(&triangle) {
+                let excess = net.share(triangle, &bounds[&triangle]);
+                changed.extend(net.cut(triangle, excess));
+            }
+        }
+        open = changed.into_iter().collect();
+        open.sort_unstable();
+    }
+    None
 }
 
 /// The bounds of these triangles.
@@ -175,6 +187,20 @@ fn bound_of(net: &Net<'_>, triangle: usize, number: usize, sight: &Sight) -> f64
 }
 
 impl Net<'_> {
+    /// The largest of the bounds of a triangle, as fractions of what is allowed, and the number of its sight.
+    fn share(&self, triangle: usize, bounds: &[f64]) -> (usize, f64) {
+        let corners = self.triangles[triangle];
+        let sights = self.task.sights.iter().enumerate().zip(bounds);
+        let shares = sights.map(|((number, sight), &bound)| {
+            let share = bound / sight.allowed(self.seen_by(number, corners));
+            (number, if share.is_nan() { f64::INFINITY } else { share })
+        });
+        shares.fold(
+            (0, 0.0),
+            |worst, share| if share.1 > worst.1 { share } else { worst },
+        )
+    }
+
     /// How the sides of a triangle, opposite each corner, follow the arcs of rims, and how far they may be from these.
     fn arcs(&self, triangle: usize) -> ([Option<Arc>; 3], f64) {
         let (corners, rims, piece) = (
@@ -252,8 +278,6 @@ fn normal_at(piece: &Piece, spots: [&Spot; 3], k: usize, pole: Option<usize>) ->
 
 #[cfg(test)]
 mod tests {
-    use std::collections::HashSet;
-
     use glam::DAffine3;
 
     use super::*;
@@ -299,7 +323,7 @@ mod tests {
         ] {
             let sight = sight(beta, tolerance, scale);
             let sights = std::slice::from_ref(&sight);
-            let made = triangulate(&shape, sights, About::Surface, u64::MAX);
+            let made = triangulate(&shape, sights, About::Surface, u64::MAX).unwrap();
             let count = made.mesh.triangle_count();
             let least = needed(&shape, &sight, About::Surface);
             assert!(
@@ -339,7 +363,7 @@ mod tests {
         ];
         for (shape, beta, about) in cases {
             let (shape, sight) = (shape.unwrap(), sight(beta, 5e-3, DVec3::ONE));
-            let made = triangulate(&shape, &[sight], about, u64::MAX);
+            let made = triangulate(&shape, &[sight], about, u64::MAX).unwrap();
             let positions = made.mesh.positions();
             let bits = |corner: u32| positions[corner as usize].to_array().map(f64::to_bits);
             let mut sides = HashSet::new();

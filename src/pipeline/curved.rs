@@ -1,0 +1,179 @@
+//! The surfaces of a round shape whose resolution follows from the tolerance: triangles with vertices on the exact surface,
+//! certified against its photosurface.
+
+use std::borrow::Cow;
+
+use glam::DAffine3;
+
+use super::certifying::of_curved;
+use super::limits::{MIN_GAP_SHARE, StepTolerance, bounds};
+use super::making::Surface;
+use super::mapped_mesh::MappedMesh;
+use super::placed_object::{PlacedObject, Shaped};
+use super::plan::Plan;
+use super::predicting::Predicted;
+use crate::material::Part;
+use crate::mesh::Mesh;
+use crate::tessellate::{About, Allowed, Counts, Sight, needed, triangulate};
+
+/// Carries out the plan of a round shape; `None` if not every triangle could be proven.
+pub(super) fn make_curved<'a>(plan: &Plan<'a>) -> Option<Surface<'a>> {
+    let shaped = plan.placed_object.curved()?;
+    let (name, placed) = &plan.placed_object.parts[0];
+    let about = about(placed);
+    let sight = sight_of(plan, shaped);
+    let most = plan.max_triangles(plan.granted);
+    let made = triangulate(&shaped.shape, std::slice::from_ref(&sight), about, most)?;
+    let part = shaped.part_of(made.mesh, placed);
+    let seen = MappedMesh::new(plan.view(), part.mesh());
+    let around = plan.tolerance.box_around([&seen]);
+    let counts = counts_of(shaped, &sight, about, part.mesh().triangle_count());
+    let certificate = of_curved(
+        &plan.tolerance,
+        part.mesh(),
+        &seen,
+        around,
+        &made.bounds[0],
+        counts,
+    );
+    Some(Surface {
+        name: name.clone(),
+        part: Cow::Owned(part),
+        seen,
+        around: around.unwrap_or_default(),
+        certificate,
+    })
+}
+
+/// Carries out the plans of a round shape for all steps with one mesh at rest; its surfaces at all steps, `None` if not
+/// every triangle could be proven.
+pub(super) fn make_curved_together<'a>(
+    placed_object: &PlacedObject,
+    plans: &mut [Plan<'a>],
+) -> Option<Vec<Surface<'a>>> {
+    let shaped = placed_object.curved()?;
+    let (name, placed) = &placed_object.parts[0];
+    let about = about(placed);
+    let most = placed_object
+        .source_triangles
+        .saturating_add(placed_object.granted_together());
+    // The offset of all steps in a file is known only with the mesh: with it the bounds of rounding change little.
+    let shown = |plans: &[Plan<'a>], part: &Part| -> Vec<(Part, MappedMesh)> {
+        let parts = plans.iter().map(|plan| {
+            let stand_in = match plan.shown.rest_to_stand_in() {
+                Some(to_stand_in) => part.clone().transformed(&to_stand_in),
+                None => part.clone(),
+            };
+            let seen = MappedMesh::new(plan.view(), stand_in.mesh());
+            (stand_in, seen)
+        });
+        parts.collect()
+    };
+    let set_box = |plans: &mut [Plan<'a>], all: &[(Part, MappedMesh)]| {
+        let around = bounds(all.iter().map(|(_, seen)| seen));
+        for plan in plans {
+            plan.tolerance.box_of_all_steps = around;
+        }
+        around
+    };
+    let before = shown(plans, placed);
+    set_box(plans, &before);
+    let sights: Vec<Sight> = plans
+        .iter()
+        .map(|plan| match &plan.placed_object.shaped {
+            Some(stand_in) => sight_of(plan, stand_in),
+            None => sight_of(plan, shaped),
+        })
+        .collect();
+    let made = triangulate(&shaped.shape, &sights, about, most)?;
+    let part = shaped.part_of(made.mesh, placed);
+    let after = shown(plans, &part);
+    let around = set_box(plans, &after);
+    let steps = plans.iter().zip(after).zip(sights.iter().zip(&made.bounds));
+    let surfaces = steps.map(|((plan, (stand_in, seen)), (sight, bounds))| {
+        let counts = counts_of(shaped, sight, about, stand_in.mesh().triangle_count());
+        Surface {
+            name: name.clone(),
+            certificate: of_curved(
+                &plan.tolerance,
+                stand_in.mesh(),
+                &seen,
+                around,
+                bounds,
+                counts,
+            ),
+            around: around.unwrap_or_default(),
+            seen,
+            part: Cow::Owned(stand_in),
+        }
+    });
+    Some(surfaces.collect())
+}
+
+/// The prediction for a round shape that is planned as an exact surface.
+pub(super) fn predict_curved(plan: &Plan<'_>) -> Option<Predicted> {
+    let shaped = plan.placed_object.curved().filter(|_| plan.is_curved)?;
+    let sight = sight_of(plan, shaped);
+    let needed = needed(&shaped.shape, &sight, about(&plan.placed_object.parts[0].1));
+    let before = shaped.shape.coarsest_curved() as f64;
+    let placed = plan.placed_object.parts[0].1.mesh();
+    Some(Predicted {
+        triangles: needed.predicted.max(before),
+        before,
+        reachable: is_reachable(&plan.tolerance, &sight, placed),
+    })
+}
+
+/// A picture shows where places are, and so do colours; otherwise only the surface is seen.
+fn about(part: &Part) -> About {
+    let has_picture = part
+        .material
+        .as_ref()
+        .is_some_and(|material| material.base_color_texture().is_some());
+    match has_picture {
+        true => About::Points,
+        false => About::Surface,
+    }
+}
+
+/// How the observer sees the shape, with the distance that rounding leaves of the tolerance aimed at.
+fn sight_of(plan: &Plan<'_>, shaped: &Shaped) -> Sight {
+    let tolerance = &plan.tolerance;
+    let view = plan.view();
+    let to_observer = DAffine3::from_translation(-view.observer_rest());
+    let allowed = tolerance.allowed_of_curved(
+        plan.placed_object.parts[0].1.mesh(),
+        plan.extremes_as_placed(),
+    );
+    Sight::new(
+        &view.relative_velocity(),
+        to_observer * shaped.to_frame(),
+        allowed,
+    )
+}
+
+fn counts_of(shaped: &Shaped, sight: &Sight, about: About, triangles_out: usize) -> Counts {
+    Counts {
+        triangles_in: shaped.shape.coarsest_curved(),
+        triangles_out,
+        minimum_triangles: needed(&shaped.shape, sight, about).least,
+    }
+}
+
+/// Whether rounding leaves enough of the tolerance, everywhere.
+fn is_reachable(tolerance: &StepTolerance, sight: &Sight, placed: &Mesh) -> bool {
+    match sight.allowed {
+        Allowed::Length(length) => length > 2.0 * MIN_GAP_SHARE * tolerance.aimed_length,
+        Allowed::Share { share, less, least } => {
+            share * tolerance.nearest_of_curved(placed) - less > least
+        }
+    }
+}
+
+impl PlacedObject {
+    /// The shape, if it is round and has the resolution that a tolerance asks for.
+    pub(super) fn curved(&self) -> Option<&Shaped> {
+        let shaped = self.shaped.as_ref()?;
+        shaped.shape.is_curved().then_some(shaped)
+    }
+}
