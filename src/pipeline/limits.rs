@@ -12,11 +12,11 @@ use super::placed_object::PlacedObject;
 use crate::light_cone::{Extremes, View};
 use crate::material::Part;
 use crate::mesh::Mesh;
-use crate::scene::{Tolerance, Unit};
+use crate::scene::{Measure, Tolerance, Unit};
 use crate::spacetime::length;
 use crate::tessellate::{
-    Allowance, Precision, Singles, largest_gap, largest_stretch, local_stretch, nearest_point,
-    rounding_bound,
+    Allowance, Motion, Precision, Singles, largest_gap, largest_stretch, local_stretch,
+    nearest_point, rounding_bound,
 };
 
 /// The fraction of a curved shape's tolerance that its facets may take by their distance from the curved surface; the
@@ -55,6 +55,8 @@ pub(super) struct StepTolerance {
     pub(super) view: View,
     /// The tolerance of the scene: certificates are about it.
     pub(super) tolerance: Tolerance,
+    /// Which distance the tolerance limits.
+    pub(super) measure: Measure,
     /// The same as a length in the observer's frame; an angle at the nearest vertex.
     pub(super) length: f64,
     /// The tolerance that refinement aims at: that of the scene, or a looser one where triangles are limited.
@@ -94,7 +96,7 @@ impl StepTolerance {
     pub(super) fn new(
         placed_object: &PlacedObject,
         view: View,
-        tolerance: Tolerance,
+        (tolerance, measure): (Tolerance, Measure),
         precision: Precision,
         seen: &[MappedMesh],
     ) -> Self {
@@ -103,6 +105,7 @@ impl StepTolerance {
         Self {
             view,
             tolerance,
+            measure,
             length: length_of(tolerance, seen),
             aimed,
             aimed_length: length_of(aimed, seen),
@@ -112,6 +115,13 @@ impl StepTolerance {
             precision,
             box_of_all_steps: None,
         }
+    }
+
+    /// The observer's motion, where the tolerance limits the distance of surfaces.
+    pub(super) fn motion(&self) -> Option<Motion> {
+        let velocity = self.view.relative_velocity();
+        let is_of_surface = self.measure == Measure::Surface && velocity.rapidity() > 0.0;
+        is_of_surface.then(|| Motion::new(velocity))
     }
 
     /// The limits of these parts, each of whose facets stands for `each` smaller ones.

@@ -10,7 +10,7 @@ use super::mapped_mesh::MappedMesh;
 use super::placed_object::PlacedObject;
 use crate::light_cone::{ModelView, View};
 use crate::material::Part;
-use crate::scene::Tolerance;
+use crate::scene::{Measure, Tolerance};
 use crate::shape::Shape;
 use crate::tessellate::Allowance;
 
@@ -54,7 +54,7 @@ impl<'a> Plan<'a> {
     pub(super) fn new(
         placed_object: &'a PlacedObject,
         shown: ModelView,
-        tolerance: Tolerance,
+        tolerance: (Tolerance, Measure),
         wanted: SurfaceOptions,
         granted: u64,
     ) -> Self {

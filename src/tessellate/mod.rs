@@ -9,6 +9,8 @@
 //! equilateral triangles (`sky`). The rule that divides an edge depends on its two ends only (`edge`), so that
 //! neighbouring triangles always agree, bit for bit.
 
+mod across;
+mod adjacency;
 mod allowance;
 mod along;
 mod ceiling;
@@ -18,11 +20,14 @@ mod edge;
 mod edges;
 mod gap;
 mod minimum;
+mod motion;
 mod nearest;
 mod outline;
 mod pieces;
+mod predicted;
 mod queue;
 mod refine;
+mod rims;
 mod room;
 mod sky;
 mod stretch;
@@ -34,8 +39,9 @@ pub(crate) use certificate::{Bounds, Counts, Singles, rounding_bound};
 pub use certificate::{Certificate, Precision};
 pub use gap::{edge_gap, triangle_gap, triangle_gap_place};
 use minimum::minimum_triangles;
-pub(crate) use minimum::predicted_pieces;
+pub(crate) use motion::Motion;
 pub(crate) use nearest::nearest_point;
+pub(crate) use predicted::predicted_pieces;
 pub(crate) use refine::{Refined, refine};
 pub(crate) use room::shares;
 pub(crate) use survey::{largest_gap, survey};

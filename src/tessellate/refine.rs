@@ -3,14 +3,15 @@
 use glam::{DVec3, DVec4, Vec2, Vec4};
 use rayon::prelude::*;
 
-use super::Allowance;
-use super::edge::{EDGE_SHARE, point_between};
+use super::adjacency::Adjacency;
+use super::edge::{EDGE_SHARE, fewest_pieces, point_between, rim_gap_share};
 use super::edges::{Edges, Origin, canonical, sides};
 use super::outline::{Divided, Need, Outline};
 use super::pieces::{Corner, Pieces};
 use super::room::Room;
 use super::sky::{Grant, divide};
 use super::survey::{Survey, survey};
+use super::{Allowance, Motion, edge_gap, minimum_triangles};
 use crate::mesh::Mesh;
 
 /// A refined mesh and its largest gap.
@@ -22,8 +23,12 @@ pub(crate) struct Refined {
     pub(crate) gap: f64,
     /// Whether the gap of every triangle is within the allowance.
     pub(crate) complete: bool,
+    /// A bound on the same as surfaces, as a gap.
+    pub(crate) surface_gap: f64,
     /// The fewest triangles that theory allows for the allowance `whole` of [`refine`].
     pub(crate) minimum_triangles: f64,
+    /// The same with at least one triangle for each triangle of the mesh.
+    pub(crate) minimum_with_source: f64,
 }
 
 /// Refines the meshes of one object until the gap of every triangle is within the allowance. The meshes and the
@@ -44,6 +49,7 @@ pub(crate) fn refine(
     allowance: &Allowance,
     whole: &Allowance,
     most_more: u64,
+    motion: Option<&Motion>,
 ) -> Vec<Refined> {
     // A triangle whose cheap bound is this small is never divided, and neither are its edges, because their gaps are
     // not larger.
@@ -51,11 +57,15 @@ pub(crate) fn refine(
         Allowance::Everywhere(allowed) => EDGE_SHARE * allowed,
         Allowance::Angle { .. } => 0.0,
     };
+    let small_edge = |offsets: &[DVec3]| 0.5 * EDGE_SHARE * allowance.between(offsets);
     let found: Vec<Survey> = meshes
         .par_iter()
-        .map(|mesh| survey(mesh, observer, small, whole))
+        .map(|mesh| survey(mesh, observer, small, whole, motion))
         .collect();
-    let outline = Outline::within(meshes, &found, observer, allowance, most_more);
+    let adjacency = Adjacency::new(meshes, &found, observer, motion, small_edge);
+    let measure = (allowance, motion);
+    let mut outline = Outline::within(meshes, &adjacency, observer, measure, most_more);
+    let sources = with_sides(meshes, &adjacency, observer, whole, motion);
     let divided: Vec<Divided> = outline.divided(&found);
     let weights = divided.iter().map(|divided| divided.need.inside);
     let mut room = Room::new(weights.collect(), outline.more / 2);
@@ -69,7 +79,12 @@ pub(crate) fn refine(
         let made: Vec<Outcome> = turn
             .par_iter()
             .map(|&(number, granted)| {
-                let Divided { mesh, index, need } = divided[number];
+                let Divided {
+                    mesh,
+                    index,
+                    need,
+                    judge,
+                } = divided[number];
                 let corners = meshes[mesh].triangles()[index as usize];
                 let (positions, edges) = (meshes[mesh].positions(), &outline.edges[mesh]);
                 let (boundary, points) = boundary(corners, positions, observer, edges);
@@ -77,7 +92,7 @@ pub(crate) fn refine(
                     corners.map(|corner| positions[corner as usize]),
                     observer,
                     &points,
-                    &outline.allowance,
+                    (&outline.allowance, judge.as_ref()),
                     need.max_points(points.len()),
                     Grant { granted, is_last },
                 );
@@ -90,24 +105,30 @@ pub(crate) fn refine(
         }
     }
 
-    let mut outcomes = outcomes.into_iter().flatten();
+    let mut outcomes: Vec<Outcome> = outcomes.into_iter().flatten().collect();
+    if motion.is_some() {
+        spread_cuts(&mut outline, &mut outcomes);
+    }
+    let mut outcomes = outcomes.into_iter();
     let (looser, needs) = (outline.looser, outline.needs);
-    let parts = found.into_iter().zip(outline.edges).zip(needs);
+    let parts = found.into_iter().zip(outline.edges).zip(needs).zip(sources);
     let parts: Vec<_> = parts
-        .map(|((found, edges), needs)| {
+        .map(|(((found, edges), needs), sides)| {
             let divided = needs.iter().filter(|need| need.is_divided).count();
             let outcomes: Vec<Outcome> = outcomes.by_ref().take(divided).collect();
-            (found, edges, needs, outcomes)
+            (found, edges, needs, outcomes, sides)
         })
         .collect();
     let refined = meshes.par_iter().zip(parts);
     refined
-        .map(|(mesh, (found, edges, needs, outcomes))| {
+        .map(|(mesh, (found, edges, needs, outcomes, sides))| {
             let mut refined = Refined {
                 mesh: (*mesh).clone(),
                 gap: found.gap,
                 complete: looser == 1.0,
+                surface_gap: found.gap,
                 minimum_triangles: found.minimum_triangles,
+                minimum_with_source: found.minimum_with_source + sides,
             };
             if !found.above.is_empty() {
                 assemble(mesh, &found.above, &needs, outcomes, edges, &mut refined);
@@ -122,6 +143,69 @@ struct Outcome {
     /// Indices of the vertices on the boundary, counter-clockwise from the first corner on.
     boundary: Vec<u32>,
     pieces: Pieces,
+}
+
+/// How many triangles more than [`Survey::minimum_with_source`] says each mesh needs because the sides of its triangles
+/// have to be divided: a polygon with `b` points on its boundary has at least `b - 2` triangles.
+fn with_sides(
+    meshes: &[&Mesh],
+    adjacency: &Adjacency,
+    observer: DVec3,
+    whole: &Allowance,
+    motion: Option<&Motion>,
+) -> Vec<f64> {
+    let more = adjacency.looked.par_iter().map(|looked| {
+        let mesh = meshes[looked.mesh as usize];
+        let corners = mesh.triangles()[looked.index as usize];
+        let offsets = corners.map(|corner| mesh.positions()[corner as usize] - observer);
+        let [a, b, c] = offsets;
+        let pieces = [(a, b), (b, c), (c, a)].into_iter().zip(looked.is_free);
+        let pieces = pieces.map(|((from, to), is_free)| {
+            // As a surface, nothing has to be divided on an edge beyond which the plane goes on.
+            if is_free {
+                return 1.0;
+            }
+            let allowed = |places: &[DVec3], along: DVec3| {
+                let share = motion.map_or(1.0, |motion| rim_gap_share(motion, places, along));
+                whole.between(places) / share
+            };
+            fewest_pieces(from, to, edge_gap(from, to), &allowed)
+        });
+        let fewest = pieces.sum::<f64>() - 2.0;
+        let counted = minimum_triangles(offsets, whole, motion).max(1.0);
+        (fewest - counted).max(0.0)
+    });
+    let more: Vec<f64> = more.collect();
+    let of_meshes = adjacency.firsts.windows(2);
+    of_meshes
+        .map(|ends| more[ends[0]..ends[1]].iter().sum())
+        .collect()
+}
+
+/// Adds to the bounds of the surface measure what it costs that rays must not pass some output triangles of the same
+/// plane.
+fn spread_cuts(outline: &mut Outline, outcomes: &mut [Outcome]) {
+    let regions = &outline.rims.regions;
+    let mut of_regions = vec![0.0f64; regions.len()];
+    let mut of_divided = outcomes.iter();
+    for (need, &region) in outline.needs.iter().flatten().zip(regions) {
+        let cut = match need.is_divided {
+            true => of_divided.next().map_or(0.0, |outcome| outcome.pieces.cut),
+            false => need.cut,
+        };
+        let of_region = &mut of_regions[region as usize];
+        *of_region = of_region.max(cut);
+    }
+    let mut of_divided = outcomes.iter_mut();
+    for (need, &region) in outline.needs.iter_mut().flatten().zip(regions) {
+        let cut = of_regions[region as usize];
+        need.surface = (need.surface + cut).min(need.gap);
+        if need.is_divided
+            && let Some(outcome) = of_divided.next()
+        {
+            outcome.pieces.surface += cut;
+        }
+    }
 }
 
 /// The boundary of a triangle, counter-clockwise from the first corner on: the vertices' indices, and the vertices as
@@ -199,10 +283,12 @@ fn assemble(
         };
         let Some(Outcome { boundary, pieces }) = outcome else {
             refined.gap = refined.gap.max(need.gap);
+            refined.surface_gap = refined.surface_gap.max(need.surface);
             triangles.push(corners);
             continue;
         };
         refined.gap = refined.gap.max(pieces.gap);
+        refined.surface_gap = refined.surface_gap.max(pieces.surface.min(pieces.gap));
         refined.complete &= pieces.complete;
         let first = (positions.len() + origins.len()) as u32;
         let index = |local: u32| match boundary.get(local as usize) {
@@ -311,7 +397,14 @@ mod tests {
             .and_then(|mesh| mesh.with_colors(positions.iter().map(color).collect()))
             .unwrap();
         let allowance = Allowance::Everywhere(1e-4);
-        let mut refined = refine(&[&mesh], DVec3::ZERO, &allowance, &allowance, u64::MAX);
+        let mut refined = refine(
+            &[&mesh],
+            DVec3::ZERO,
+            &allowance,
+            &allowance,
+            u64::MAX,
+            None,
+        );
         let refined = refined.pop().unwrap();
         assert!(refined.complete && refined.gap <= 1e-4);
         let made = refined.mesh;
@@ -345,7 +438,14 @@ mod tests {
         for allowed in [1e-9, 1e-300] {
             let allowance = Allowance::Everywhere(allowed);
             for most_more in [50, 200, 1000, 5000, 20_000] {
-                let refined = refine(&[&mesh], DVec3::ZERO, &allowance, &allowance, most_more);
+                let refined = refine(
+                    &[&mesh],
+                    DVec3::ZERO,
+                    &allowance,
+                    &allowance,
+                    most_more,
+                    None,
+                );
                 let more = refined[0].mesh.triangles().len() as u64 - 2;
                 let used = format!("{more} of {most_more} at {allowed:e}");
                 assert!(more <= most_more && 2 * more >= most_more, "{used}");
