@@ -65,6 +65,9 @@ pub(super) struct Adjacency {
 /// The key of a position: zeros of either sign are one position.
 type Key = [u64; 3];
 
+/// A side with the keys of its ends.
+type KeyedMember = (Key, Key, Member);
+
 impl Adjacency {
     /// The triangles that the surveys found, and their edges whose gap is larger than `small` says for the offsets of its
     /// ends from the observer.
@@ -84,7 +87,7 @@ impl Adjacency {
         for found in found {
             firsts.push(firsts.last().unwrap_or(&0) + found.above.len());
         }
-        let seen: Vec<(Looked, Vec<(Key, Key, Member)>)> = all
+        let seen: Vec<(Looked, Vec<KeyedMember>)> = all
             .into_par_iter()
             .enumerate()
             .map(|(number, (mesh, index))| {
