@@ -35,8 +35,9 @@ pub(super) struct AccuracyArgs {
     #[arg(long)]
     no_subdivide: bool,
     /// Maximum number of triangles of all photosurfaces together. If the tolerance needs more, the largest gaps are closed
-    /// first and the result is not certified. Triangles of the source are always kept [default: 20000000]
-    #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
+    /// first and the result is not certified. Triangles of the source are always kept. "none" for no limit: then no step is
+    /// predicted before the first is made, which saves time in parts of many steps [default: 20000000]
+    #[arg(long, value_name = "N", value_parser = budget, allow_hyphen_values = true)]
     max_triangles: Option<u64>,
 }
 
@@ -248,6 +249,14 @@ fn all_certified(made: &Tally, verbosity: Verbosity) -> bool {
 
 /// The forms that a tolerance may have.
 const TOLERANCE_FORMS: &str = "expected a fraction of the diagonal like 1e-3, a length like abs:0.01 or an angle like deg:0.02";
+
+/// `1000000`, `1e6` or `none`
+fn budget(text: &str) -> anyhow::Result<u64> {
+    match text {
+        "none" => Ok(u64::MAX),
+        number => whole_number(number),
+    }
+}
 
 /// `1e-3`, `abs:0.01` or `deg:0.02`
 pub(super) fn tolerance(text: &str) -> anyhow::Result<Tolerance> {

@@ -12,7 +12,7 @@ use photosurface::shape::Color;
 use photosurface::{DVec3, PictureMethod, PictureSettings, PictureView, Scene};
 
 use super::args::{Given, refuse};
-use super::values::{count, number, vector};
+use super::values::{count, number, part, vector};
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Camera (places and directions are in the observer's frame)")]
@@ -281,17 +281,6 @@ pub(super) fn size(text: &str) -> anyhow::Result<PictureSize> {
         })
     };
     Ok(PictureSize::new(number(width)?, number(height)?)?)
-}
-
-/// `A..B`
-fn part(text: &str) -> anyhow::Result<Range<usize>> {
-    let whole = |text: &str| text.trim().parse::<usize>().ok();
-    let ends = text.split_once("..");
-    let range = ends.and_then(|(from, to)| Some(whole(from)?..whole(to)?));
-    let range = range.filter(|range| !range.is_empty());
-    range.with_context(|| {
-        format!("\"{text}\" is no part, expected A..B with A below B, like 10..20 for the numbers 10 to 19")
-    })
 }
 
 /// Rays a pixel along each side.

@@ -11,7 +11,9 @@ use rayon::ThreadPoolBuilder;
 
 use super::hints::meant;
 use super::status::{INTERRUPTED, Status, ended};
-use super::{check, cost, example, export, flight, messages, page, render, schema, values};
+use super::{
+    check, cost, example, export, flight, join, messages, page, render, schema, sweep, values,
+};
 
 /// More threads than so many for each core, and than so many on any machine, only wait for each other.
 const THREADS_PER_CORE: usize = 4;
@@ -44,6 +46,8 @@ pub(super) struct Cli {
 enum Command {
     Export(export::ExportArgs),
     Render(render::RenderArgs),
+    Sweep(sweep::SweepArgs),
+    Join(join::JoinArgs),
     Page(page::PageArgs),
     Check(check::CheckArgs),
     Cost(cost::CostArgs),
@@ -74,6 +78,8 @@ impl Command {
         match self {
             Self::Export(args) => export::run(args),
             Self::Render(args) => render::run(args),
+            Self::Sweep(args) => sweep::run(args),
+            Self::Join(args) => join::run(args),
             Self::Page(args) => page::run(args),
             Self::Check(args) => check::run(args),
             Self::Cost(args) => cost::run(args).map(|()| Status::Done),

@@ -2,14 +2,13 @@
 
 use std::fs;
 use std::io::{IsTerminal, Write, stdout};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, ensure};
 use clap::ValueEnum;
-use photosurface::jobs::{
-    CameraSettings, ExportError, ExportLevel, LightNote, export_levels, write_report,
-};
+use photosurface::jobs::{CameraSettings, ExportError, ExportLevel, export_levels, write_report};
 use photosurface::pipeline::Facts;
 use photosurface::scene::Attribute;
 use photosurface::write::{Format, Playback, Report, StageTime, WriteError};
@@ -19,14 +18,16 @@ use super::accuracy::{AccuracyArgs, DetailArgs};
 use super::args::{InputArgs, ObserverArgs};
 use super::effects::{EffectArgs, tell_of_ramp};
 use super::file_camera::FileCameraArgs;
-use super::input::{Input, tell_of_inside, tell_of_missing};
+use super::input::{Input, Loaded, tell_of_inside, tell_of_missing};
 use super::messages::{Verbosity, counted, print, size, stdout_is_closed};
 use super::models::ModelsArgs;
-use super::output::{Bar, FileFormat, check_destinations, from_first_to_last, is_stdout};
+use super::outcome::Outcome;
+use super::output::{FileFormat, check_destinations, from_first_to_last, is_stdout};
 use super::provenance::provenance;
 use super::status::Status;
-use super::values::number;
+use super::values::{number, part};
 use super::wording::{in_words_of_flags, or_ply};
+use super::work::{Plan, PlannedFile, WorkArgs};
 
 /// Shown below the flags.
 const EXAMPLES: &str = "\
@@ -68,6 +69,8 @@ pub(super) struct ExportArgs {
     #[command(flatten)]
     camera: FileCameraArgs,
     #[command(flatten)]
+    work: WorkArgs,
+    #[command(flatten)]
     verbosity: Verbosity,
 }
 
@@ -85,6 +88,10 @@ struct OutputArgs {
     /// Write a file for each step: out_step000.glb, out_step001.glb, ...
     #[arg(long)]
     split: bool,
+    /// Write only the steps from A up to B, B not included, counted from 0: names and numbers are those of the whole, and
+    /// --max-triangles is shared out among all steps; not with --animate
+    #[arg(long, value_name = "A..B", value_parser = part)]
+    only: Option<Range<usize>>,
     /// Show the steps one after another (glTF): "frames", a mesh for each step, shown only during its frame; "morph", one
     /// mesh with the steps as morph targets, within the tolerance at each step (without --attributes, which differ
     /// from step to step)
@@ -124,6 +131,11 @@ pub(super) enum Animate {
 }
 
 pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
+    made(args, &Loaded::default())?.told()
+}
+
+/// Makes what the flags say, of models that may have been read before.
+pub(super) fn made(args: &ExportArgs, loaded: &Loaded) -> anyhow::Result<Outcome> {
     let output = &args.output;
     let format = output.format()?;
     output.check_streams(args.detail.level_count())?;
@@ -139,24 +151,34 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
     }
 
     let start = Instant::now();
-    let mut input = Input::read(&args.input, &args.observer, args.verbosity)?;
+    let mut input = Input::read_with(&args.input, &args.observer, loaded, args.verbosity)?;
     if !args.attributes.is_empty() {
         let attributes = args.attributes.iter().copied().collect();
         input.scene = input.scene.with_attributes(attributes);
     }
     let path = output.path(&input.name);
-    let scene = args.effects.scene(args.accuracy.scene(input.scene));
+    let scene = args.effects.scene(args.accuracy.scene(input.scene.clone()));
     tell_of_ramp(&scene, args.verbosity);
-    let placed = args.models.placed(scene, input.models)?;
+    let outputs = [Some(path.clone()), output.report.clone()];
+    let outputs: Vec<PathBuf> = outputs.into_iter().flatten().collect();
+    let resume = args.work.fingerprint(&args.input, &input, &outputs)?;
+    let of = scene.steps().len();
+    let placed = args.models.placed(scene, input.models.clone())?;
     tell_of_inside(&placed, args.verbosity);
     let is_side_by_side = !args.models.side_by_side()?.is_empty();
     let camera = args.camera.settings(is_side_by_side)?;
     let settings = ExportSettings {
+        resume: resume.map(|files| files.with("models", &args.models.side_by_side().ok())),
         provenance: provenance(&args.input, &input.files),
         ..args.settings(camera, start, &input.textures)
     };
     let levels = export_levels(&placed, &settings, format, &path).map_err(in_words_of_flags)?;
     check_destinations(levels.iter().flat_map(ExportLevel::outputs), &input.files)?;
+    if args.work.plan {
+        let planned = levels.iter().flat_map(planned).collect();
+        let plan = Plan::new(&args.input, &input, planned, of);
+        return Ok(Outcome::planned(plan));
+    }
     if format != Format::Ply {
         tell_replaced_names(&placed, &path, args.verbosity);
     }
@@ -176,29 +198,48 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<Status> {
             level.files()[0].display()
         ));
     }
-    let mut status = Status::Done;
+    let mut outcome = Outcome::default();
     for (number, level) in levels.into_iter().enumerate() {
-        let (is_certified, notes) = export(args, level)?;
+        let (is_certified, exported) = export(args, level)?;
         if !is_certified {
-            status = Status::NotCertified;
+            outcome.status = Status::NotCertified;
         }
+        let Exported {
+            files,
+            data_files,
+            notes,
+            ..
+        } = exported;
+        outcome.resumed += exported.resumed.len();
+        outcome.files.extend(files);
+        outcome.files.extend(data_files);
+        outcome.tally.merge(exported.tally);
         // Of all levels of detail the same is to be said.
         for note in notes.iter().filter(|_| number == 0) {
             args.verbosity.note(note);
         }
     }
     tell_of_missing(&input.textures, placed.scene(), args.verbosity);
-    Ok(status)
+    Ok(outcome)
 }
 
-/// Makes and writes the photosurfaces of one level of detail; whether all of them are certified, and what is to be said of
-/// their colours.
-fn export(args: &ExportArgs, level: ExportLevel) -> anyhow::Result<(bool, Vec<LightNote>)> {
+/// The files of a level of detail.
+fn planned(level: &ExportLevel) -> Vec<PlannedFile> {
+    let files = level.files().iter().zip(level.finished()).enumerate();
+    let planned = files.map(|(number, (file, seal))| {
+        PlannedFile::new(file, level.steps_of(number), seal.is_some())
+    });
+    planned.collect()
+}
+
+/// Makes and writes the photosurfaces of one level of detail; whether all of them are certified, and what was made.
+fn export(args: &ExportArgs, level: ExportLevel) -> anyhow::Result<(bool, Exported)> {
     let verbosity = args.verbosity;
     let has_marker = level.marker().is_some();
     let to_stdout = is_stdout(&level.files()[0]);
     let report_path = level.report().map(Path::to_owned);
-    let progress = Bar::new(level.pieces(), "photosurfaces", verbosity);
+    let pieces = level.pieces();
+    let progress = args.work.told(pieces, "photosurfaces", verbosity);
     let fitted = level.fit();
     if let Some(fitted) = fitted.fitted() {
         args.accuracy.tell_fitted(fitted, verbosity);
@@ -231,11 +272,21 @@ fn export(args: &ExportArgs, level: ExportLevel) -> anyhow::Result<(bool, Vec<Li
     if !to_stdout {
         verbosity.result(summary(&exported, has_marker));
     }
-    let is_certified = args.accuracy.is_kept(&exported.tally, verbosity);
-    Ok((is_certified, exported.notes))
+    let mut is_certified = args.accuracy.is_kept(&exported.tally, verbosity);
+    if !exported.resumed_are_certified {
+        verbosity
+            .note("of the files that were finished before, not all are within their tolerance");
+        is_certified = false;
+    }
+    Ok((is_certified, exported))
 }
 
 impl ExportArgs {
+    /// The file that names all files, if it is given.
+    pub(super) fn output_file(&self) -> Option<&Path> {
+        self.output.output.as_deref()
+    }
+
     /// The settings of the job; the input was read from `start` to now.
     fn settings(
         &self,
@@ -246,6 +297,7 @@ impl ExportArgs {
         let frames_per_second = self.output.fps;
         ExportSettings {
             split: self.output.split,
+            only: self.output.only.clone(),
             playback: self.output.animate.map(|animate| match animate {
                 Animate::Frames => Playback::Frames { frames_per_second },
                 Animate::Morph => Playback::Morph { frames_per_second },
@@ -361,13 +413,22 @@ fn shown_name(name: &str) -> String {
 }
 
 fn summary(exported: &Exported, has_marker: bool) -> String {
+    let resumed = match (exported.resumed.len(), exported.files.len()) {
+        (0, _) => String::new(),
+        (some, all) if some == all => {
+            let were = if all == 1 { "was" } else { "were" };
+            let place = from_first_to_last(&exported.files);
+            return format!("{place}: {were} finished before");
+        }
+        (some, _) => format!("; {} of them finished before", counted(some, "file")),
+    };
     let files = exported.files.iter().chain(&exported.data_files);
     let sizes = files.map(|file| fs::metadata(file).map_or(0, |data| data.len()));
     let bytes = sizes.sum();
     let place = from_first_to_last(&exported.files);
     let marker = if has_marker { " and the marker" } else { "" };
     format!(
-        "{place}: {}, {}{marker}, {}",
+        "{place}: {}, {}{marker}, {}{resumed}",
         counted(exported.tally.photosurfaces, "photosurface"),
         counted(exported.tally.triangles, "triangle"),
         size(bytes)

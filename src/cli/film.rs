@@ -47,11 +47,31 @@ pub(super) struct Film<'a> {
 }
 
 impl FilmArgs {
+    /// The file of the film, if there is to be one.
+    pub(super) fn path(&self) -> Option<&Path> {
+        self.film.as_deref()
+    }
+
     /// The film, if one is asked for.
     pub(super) fn film(&self) -> anyhow::Result<Option<Film<'_>>> {
         let Some(path) = self.film.as_deref() else {
             return Ok(None);
         };
+        let film = Film::new(path, self.fps, self.no_loop)?;
+        Ok(Some(Film {
+            seconds: self.seconds,
+            ..film
+        }))
+    }
+}
+
+impl<'a> Film<'a> {
+    /// A film in the format of its file, on stdout an APNG.
+    pub(super) fn new(
+        path: &'a Path,
+        rate: Option<FrameRate>,
+        is_shown_once: bool,
+    ) -> anyhow::Result<Self> {
         let format = match is_stdout(path) {
             true => {
                 ensure!(
@@ -63,19 +83,19 @@ impl FilmArgs {
             false => FilmFormat::from_path(path)?,
         };
         if format == FilmFormat::Mp4 {
-            let once = [("--no-loop", self.no_loop)];
+            let once = [("--no-loop", is_shown_once)];
             refuse(
                 &once,
                 "is for .gif, .png and .webp; whether an .mp4 begins anew is up to the player",
             )?;
         }
-        Ok(Some(Film {
+        Ok(Self {
             path,
             format,
-            rate: self.fps.unwrap_or_default(),
-            seconds: self.seconds,
-            loops: !self.no_loop,
-        }))
+            rate: rate.unwrap_or_default(),
+            seconds: None,
+            loops: !is_shown_once,
+        })
     }
 }
 
@@ -168,6 +188,6 @@ impl Film<'_> {
 }
 
 /// Frames per second.
-fn frame_rate(text: &str) -> anyhow::Result<FrameRate> {
+pub(super) fn frame_rate(text: &str) -> anyhow::Result<FrameRate> {
     Ok(FrameRate::new(number(text)?)?)
 }

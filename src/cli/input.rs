@@ -1,10 +1,14 @@
 //! From the command line's input to a scene with its models: files, stdin, built-in scenes, bare meshes.
 
+use std::cell::RefCell;
+use std::collections::HashMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, bail, ensure};
-use photosurface::jobs::{MAX_SCENE_BYTES, fly_by, passing_observer, scene_from_bytes};
+use photosurface::jobs::{
+    FileFindings, MAX_SCENE_BYTES, fly_by, passing_observer, scene_from_bytes,
+};
 use photosurface::material::Normals;
 use photosurface::pipeline::{Around, Blurred};
 use photosurface::read::{
@@ -41,11 +45,44 @@ pub(super) struct Input {
     pub(super) textures: Textures,
 }
 
+/// Models that were read before in this process, for runs that share them.
+#[derive(Debug, Default)]
+pub(super) struct Loaded {
+    /// By everything that reading depends on.
+    known: RefCell<HashMap<String, (Vec<Model>, FileFindings)>>,
+    textures: RefCell<Option<Textures>>,
+}
+
+impl Loaded {
+    /// What was read before with this key, or what `read` reads now; and whether it was read before.
+    fn models(
+        &self,
+        key: String,
+        read: impl FnOnce() -> anyhow::Result<(Vec<Model>, FileFindings)>,
+    ) -> anyhow::Result<(Vec<Model>, FileFindings, bool)> {
+        if let Some((models, found)) = self.known.borrow().get(&key) {
+            return Ok((models.clone(), found.clone(), true));
+        }
+        let (models, found) = read()?;
+        let kept = (models.clone(), found.clone());
+        self.known.borrow_mut().insert(key, kept);
+        Ok((models, found, false))
+    }
+
+    /// Textures that are decoded once for all runs.
+    fn textures(&self, max_pixels: u64) -> Textures {
+        let mut textures = self.textures.borrow_mut();
+        let textures = textures.get_or_insert_with(|| Textures::new(max_pixels));
+        textures.clone()
+    }
+}
+
 /// What is read, for whom, and how much is said about it.
 struct Reading<'a> {
     access: Access,
     normals: Option<Normals>,
     observer: &'a ObserverArgs,
+    loaded: &'a Loaded,
     verbosity: Verbosity,
 }
 
@@ -56,17 +93,29 @@ impl Input {
         observer: &ObserverArgs,
         verbosity: Verbosity,
     ) -> anyhow::Result<Self> {
-        observer.refuse_speeds()?;
-        Self::read_for_speeds(input, observer, verbosity)
+        Self::read_with(input, observer, &Loaded::default(), verbosity)
     }
 
-    /// As [`Input::read`]; of several speeds the scene has the first one.
+    /// As [`Input::read`], with models that were read before.
+    pub(super) fn read_with(
+        input: &InputArgs,
+        observer: &ObserverArgs,
+        loaded: &Loaded,
+        verbosity: Verbosity,
+    ) -> anyhow::Result<Self> {
+        observer.refuse_speeds()?;
+        Self::read_for_speeds(input, observer, loaded, verbosity)
+    }
+
+    /// As [`Input::read_with`]; of several speeds the scene has the first one.
     pub(super) fn read_for_speeds(
         input: &InputArgs,
         observer: &ObserverArgs,
+        loaded: &Loaded,
         verbosity: Verbosity,
     ) -> anyhow::Result<Self> {
         let reading = Reading {
+            loaded,
             access: input.access(),
             normals: input.normals,
             observer,
@@ -82,8 +131,11 @@ impl Input {
             Some(path) if path == Path::new("-") => {
                 let bytes = from_stdin()?;
                 if is_model_of_one_file(&bytes) {
-                    let read = reading.access.read_model_bytes(&bytes, Path::new(""));
-                    return reading.mesh("mesh", read.context("stdin")?, None);
+                    let read = || {
+                        let read = reading.access.read_model_bytes(&bytes, Path::new(""));
+                        read.context("stdin")
+                    };
+                    return reading.mesh("mesh", read, None);
                 }
                 let scene = scene_from_stdin(&bytes)?;
                 reading.scene("stdin", scene, None)
@@ -113,10 +165,11 @@ impl Reading<'_> {
                 let scene = scene_from_bytes(&bytes).with_context(|| place)?;
                 self.scene(&name, scene, Some(path))
             }
-            Some(extension) if is_model_extension(extension) => {
-                let read = self.access.read_model(path).map_err(wrong)?;
-                self.mesh(&name, read, Some(path))
-            }
+            Some(extension) if is_model_extension(extension) => self.mesh(
+                &name,
+                || self.access.read_model(path).map_err(wrong),
+                Some(path),
+            ),
             // Such as what a shell makes of `<(photosurface example cube)`.
             _ if path.exists() && !path.is_file() && !path.is_dir() => {
                 bail!("{place}: {}", not_a_file("a pipe or a device"))
@@ -139,13 +192,18 @@ impl Reading<'_> {
         }
         let directory = path.and_then(Path::parent).unwrap_or(Path::new(""));
         let place = path.map_or(name.to_string(), |path| path.display().to_string());
-        let read = self.access.load_models(&scene, directory);
-        let (models, found) = read.with_context(|| place.clone())?;
+        let sources = scene.objects().iter();
+        let sources: Vec<_> = sources.map(|o| (&o.name, &o.source, &o.normals)).collect();
+        let key = format!("{directory:?} {:?} {sources:?}", self.access);
+        let (models, found, is_known) = self.loaded.models(key, || {
+            let read = self.access.load_models(&scene, directory);
+            read.with_context(|| place.clone())
+        })?;
         let scene = self.observer.stepped(scene, &models)?;
         let named = path.into_iter().chain(self.observer.file());
         let mut files: Vec<PathBuf> = named.map(Path::to_owned).collect();
         for (file, findings) in found {
-            for note in findings.lines() {
+            for note in findings.lines().into_iter().filter(|_| !is_known) {
                 self.verbosity
                     .note(format_args!("{}: {note}", file.display()));
             }
@@ -158,7 +216,7 @@ impl Reading<'_> {
             files,
             models,
             scene,
-            textures: Textures::new(self.access.max_texture_pixels),
+            textures: self.loaded.textures(self.access.max_texture_pixels),
         })
     }
 
@@ -166,13 +224,21 @@ impl Reading<'_> {
     fn mesh(
         &self,
         name: &str,
-        read: (Model, Findings),
+        read: impl FnOnce() -> anyhow::Result<(Model, Findings)>,
         path: Option<&Path>,
     ) -> anyhow::Result<Input> {
         let place = path.map_or("stdin".into(), |path| path.display().to_string());
-        let read = with_normals(read, self.normals.unwrap_or_default());
-        let (model, findings) = read.with_context(|| place.clone())?;
-        for note in findings.lines() {
+        let key = format!("{path:?} {:?} {:?}", self.access, self.normals);
+        let (models, mut found, is_known) = self.loaded.models(key, || {
+            let read = with_normals(read()?, self.normals.unwrap_or_default());
+            let (model, findings) = read.with_context(|| place.clone())?;
+            Ok((vec![model], vec![(PathBuf::from(&place), findings)]))
+        })?;
+        let findings = found
+            .pop()
+            .map(|(_, findings)| findings)
+            .unwrap_or_default();
+        for note in findings.lines().into_iter().filter(|_| !is_known) {
             self.verbosity.note(format_args!("{place}: {note}"));
         }
         let source = Source::File(path.unwrap_or(Path::new("-")).to_owned());
@@ -183,9 +249,8 @@ impl Reading<'_> {
         let scene = Scene::new(observer, vec![Object::new(name, source)])?;
         let mut scene = self.observer.apply(scene)?;
         if !self.observer.has_place() {
-            scene = fly_by(scene, &model)?;
+            scene = fly_by(scene, &models[0])?;
         }
-        let models = vec![model];
         let scene = self.observer.stepped(scene, &models)?;
         let mut files = findings.files;
         files.extend(self.observer.file().map(Path::to_owned));
@@ -196,7 +261,7 @@ impl Reading<'_> {
             scene,
             models,
             files,
-            textures: Textures::new(self.access.max_texture_pixels),
+            textures: self.loaded.textures(self.access.max_texture_pixels),
         })
     }
 }

@@ -46,6 +46,13 @@ impl Verbosity {
         }
     }
 
+    /// A note that was found, or an error that was met, where nobody was told of it.
+    pub(super) fn retold(self, note: impl Display) {
+        if !self.quiet {
+            say(format_args!("note: {note}"));
+        }
+    }
+
     /// What was done.
     pub(super) fn result(self, result: impl Display) {
         if !self.quiet {

@@ -1,18 +1,20 @@
 //! `photosurface render`: pictures of what the observer sees, and of photosurfaces from anywhere.
 
+use std::collections::BTreeMap;
 use std::io::{IsTerminal, stdout};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 use photosurface::jobs::{
-    EmptyView, FrameFacts, PassageError, RenderError, Variant, ViewCost, passage,
-    render_side_by_side,
+    EmptyView, Finished, FrameFacts, PassageError, RenderError, Rendered, Variant, ViewCost,
+    passage, render_side_by_side,
 };
 use photosurface::render::{Picture, Projection};
 use photosurface::spacetime::ViewModel;
 use photosurface::tessellate::Precision;
-use photosurface::write::write_whole;
-use photosurface::{Observer, PictureView, PlacedScene, Scene};
+use photosurface::write::{Seal, write_whole};
+use photosurface::{Observer, PictureView, PlacedScene, Progress, Scene};
 
 use super::accuracy::AccuracyArgs;
 use super::args::{InputArgs, ObserverArgs, PASSAGE};
@@ -20,11 +22,13 @@ use super::camera::{CameraArgs, Method, View};
 use super::effects::{EffectArgs, tell_of_ramp};
 use super::film::{Film, FilmArgs};
 use super::guides::GuideArgs;
-use super::input::{Input, tell_of_blurred, tell_of_inside, tell_of_missing};
-use super::messages::{Verbosity, counted, print};
+use super::input::{Input, Loaded, tell_of_blurred, tell_of_inside, tell_of_missing};
+use super::messages::{Verbosity, counted, grouped, print};
 use super::models::ModelsArgs;
-use super::output::{Bar, check_destinations, extension, from_first_to_last, is_stdout};
+use super::outcome::Outcome;
+use super::output::{check_destinations, extension, from_first_to_last, is_stdout};
 use super::status::Status;
+use super::work::{Plan, PlannedFile, Told, WorkArgs};
 
 /// Shown below the flags.
 const EXAMPLES: &str = "\
@@ -64,10 +68,24 @@ pub(super) struct RenderArgs {
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,
     #[command(flatten)]
+    work: WorkArgs,
+    #[command(flatten)]
     verbosity: Verbosity,
 }
 
 pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
+    made(args, &Loaded::default())?.told()
+}
+
+impl RenderArgs {
+    /// The file that names all files, if it is given.
+    pub(super) fn output_file(&self) -> Option<&Path> {
+        self.film.path().or(self.output.as_deref())
+    }
+}
+
+/// Makes what the flags say, of models that may have been read before.
+pub(super) fn made(args: &RenderArgs, loaded: &Loaded) -> anyhow::Result<Outcome> {
     let (camera, guides, verbosity) = (&args.camera, &args.guides, args.verbosity);
     let method = camera.method()?;
     ensure!(
@@ -81,7 +99,7 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
     camera.refuse_unused(method, &args.accuracy.given())?;
     check_output(args.output.as_deref())?;
     let film = args.film.film()?;
-    let input = Input::read_for_speeds(&args.input, &args.observer, verbosity)?;
+    let input = Input::read_for_speeds(&args.input, &args.observer, loaded, verbosity)?;
     let mut settings = camera.settings(method)?;
     let tells_time = camera.sheet || film.is_some();
     settings.guides = guides.guides(camera.shows_full_sky(), tells_time)?;
@@ -128,16 +146,54 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
         None => &files[drawn.clone()],
     };
     check_destinations(made.iter().cloned(), &input.files)?;
+    let resume = match &film {
+        Some(_) => None,
+        None => args.work.fingerprint(&args.input, &input, made)?,
+    };
     let scene = &scenes[0].1;
+    settings.background = camera.background(scene, settings.background);
+    settings.surface_options = args.accuracy.wanted(Precision::Double);
+    let budget = args.accuracy.max_triangles();
+    let resume = resume.map(|files| files.with("scenes", &(&scenes, models, budget)));
+    let seal = |number| {
+        let fingerprint = settings.fingerprint(resume?, number);
+        Seal::of_file(&files[number], fingerprint)
+    };
+    let resumed: BTreeMap<usize, Seal> = match &film {
+        Some(_) => BTreeMap::new(),
+        None => drawn
+            .clone()
+            .filter_map(|number| Some((number, seal(number)?)))
+            .collect(),
+    };
+    let of = settings.picture_count(steps);
+    if args.work.plan {
+        let planned = match &film {
+            Some(film) => vec![PlannedFile::new(film.path, drawn.clone(), false)],
+            None => drawn
+                .clone()
+                .map(|number| {
+                    let steps = if of == 1 {
+                        0..steps
+                    } else {
+                        number..number + 1
+                    };
+                    PlannedFile::new(&files[number], steps, resumed.contains_key(&number))
+                })
+                .collect(),
+        };
+        let plan = Plan::new(&args.input, &input, planned, of);
+        return Ok(Outcome::planned(plan));
+    }
+    settings.skipped = resumed.keys().copied().collect();
     tell_of_ramp(scene, verbosity);
     let first = PlacedScene::new(scene.clone(), input.models.clone())?;
     tell_of_inside(&first, verbosity);
     if method == Method::Rays {
         tell_of_blurred(&first, verbosity);
     }
-    settings.background = camera.background(scene, settings.background);
-    settings.surface_options = args.accuracy.wanted(Precision::Double);
-    let fits_budget = camera.shows_meshes(method) && settings.surface_options.subdivide;
+    let fits_budget =
+        camera.shows_meshes(method) && settings.surface_options.subdivide && budget < u64::MAX;
     let fitted = |placed| match fits_budget {
         true => {
             let wanted = settings.surface_options;
@@ -147,7 +203,22 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
         }
         false => placed,
     };
-    let progress = Bar::new(0, "rows", verbosity);
+    let progress = args.work.told(0, "rows", verbosity);
+    let progress = match film {
+        Some(_) => progress,
+        None => progress.awaiting_files(),
+    };
+    for (&number, seal) in &resumed {
+        let bytes = std::fs::metadata(&files[number]).map_or(0, |data| data.len());
+        progress.finished(&Finished {
+            steps: number..number + 1,
+            of,
+            seconds: 0.0,
+            is_certified: seal.is_certified,
+            file: Some((&files[number], bytes)),
+            is_resumed: true,
+        });
+    }
     let textures = &input.textures;
     let placed = |scene: &Scene| PlacedScene::new(scene.clone(), input.models.clone());
     let draw = |finished: &mut dyn FnMut(usize, &Picture) -> anyhow::Result<()>| match (
@@ -166,20 +237,40 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
             render_side_by_side(&rows, textures, &settings, &progress, finished)
         }
     };
+    let seal = |number| {
+        Some(Seal {
+            fingerprint: settings.fingerprint(resume?, number),
+            is_certified: progress.last_is_certified(),
+        })
+    };
     let rendered = match &film {
         Some(film) => film.record(size, drawn.len(), draw),
-        None => draw(&mut |number, picture| write(&files[number], picture)),
+        None if resumed.len() == drawn.len() => Ok(Rendered::default()),
+        None => draw(&mut |number, picture| {
+            let bytes = write(&files[number], picture, seal(number))?;
+            progress.wrote(&files[number], bytes);
+            Ok(())
+        }),
     };
     let rendered = rendered.map_err(|error| match error.downcast::<RenderError>() {
         Ok(error) => camera.flagged(error),
         Err(error) => error,
     })?;
     progress.finish();
+    if let Some(film) = &film {
+        tell_of_film(
+            film,
+            drawn.clone(),
+            of,
+            rendered.tally.is_certified(),
+            &progress,
+        );
+    }
     tell_of_costs(&rendered.costs, verbosity);
     let shown = if camera.sheet || camera.together {
         steps
     } else {
-        drawn.len()
+        drawn.len() - resumed.len()
     };
     let views = shown * columns * scenes.len();
     tell_of_frame(rendered.frame, camera, verbosity);
@@ -194,15 +285,31 @@ pub(super) fn run(args: &RenderArgs) -> anyhow::Result<Status> {
             ),
             None => counted(made.len(), "picture"),
         };
+        let before = match resumed.len() {
+            0 => String::new(),
+            some => format!(", {} of them finished before", grouped(some)),
+        };
         verbosity.result(format_args!(
-            "{}: {pictures}{}",
+            "{}: {pictures}{before}{}",
             from_first_to_last(made),
             legend(args)
         ));
     }
-    Ok(match args.accuracy.is_kept(&rendered.tally, verbosity) {
-        true => Status::Done,
-        false => Status::NotCertified,
+    let mut is_certified = args.accuracy.is_kept(&rendered.tally, verbosity);
+    if !resumed.values().all(|seal| seal.is_certified) {
+        verbosity
+            .note("of the pictures that were finished before, not all are within their tolerance");
+        is_certified = false;
+    }
+    Ok(Outcome {
+        status: match is_certified {
+            true => Status::Done,
+            false => Status::NotCertified,
+        },
+        files: made.to_vec(),
+        resumed: resumed.len(),
+        tally: rendered.tally,
+        plan: None,
     })
 }
 
@@ -392,10 +499,36 @@ fn check_output(output: Option<&Path>) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn write(path: &Path, picture: &Picture) -> anyhow::Result<()> {
-    if is_stdout(path) {
-        return print(|out| Ok(picture.write_png(out)?));
+/// Tells of a film as a whole.
+fn tell_of_film(
+    film: &Film<'_>,
+    steps: Range<usize>,
+    of: usize,
+    is_certified: bool,
+    progress: &Told,
+) {
+    let bytes = std::fs::metadata(film.path).map_or(0, |data| data.len());
+    progress.finished(&Finished {
+        steps,
+        of,
+        seconds: 0.0,
+        is_certified,
+        file: Some((film.path, bytes)),
+        is_resumed: false,
+    });
+}
+
+/// Writes a picture with its seal, if it gets one; the length of the file.
+fn write(path: &Path, picture: &Picture, seal: Option<Seal>) -> anyhow::Result<u64> {
+    let mut png = vec![];
+    picture.write_png(&mut png)?;
+    if let Some(seal) = seal {
+        png = seal.sealed_png(&png);
     }
-    write_whole(path, |writer| Ok(picture.write_png(writer)?))
-        .with_context(|| path.display().to_string())
+    match is_stdout(path) {
+        true => print(|out| Ok(out.write_all(&png)?))?,
+        false => write_whole(path, |writer| Ok(writer.write_all(&png)?))
+            .with_context(|| path.display().to_string())?,
+    }
+    Ok(png.len() as u64)
 }

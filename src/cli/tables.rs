@@ -33,6 +33,9 @@ pub(super) fn csv<const N: usize>(columns: [(&str, &str); N], rows: &[impl Seria
         let json = serde_json::to_value(row).expect("names and numbers");
         let cells = columns.map(|(_, place)| match json.pointer(place) {
             None | Some(Value::Null) => String::new(),
+            Some(Value::String(text)) if text.contains([',', '"', '\n', '\r']) => {
+                format!("\"{}\"", text.replace('"', "\"\""))
+            }
             Some(Value::String(text)) => text.clone(),
             Some(value) => value.to_string(),
         });

@@ -1,6 +1,7 @@
 //! Values of flags that several commands have: numbers, counts, vectors.
 
 use std::num::NonZeroUsize;
+use std::ops::Range;
 
 use anyhow::{Context, anyhow, ensure};
 use photosurface::DVec3;
@@ -48,6 +49,17 @@ pub(super) fn count(text: &str) -> anyhow::Result<NonZeroUsize> {
     let number = usize::try_from(whole_number(text)?).ok();
     let number = number.and_then(NonZeroUsize::new);
     number.with_context(|| format!("{text} is too small, expected at least 1"))
+}
+
+/// `A..B`
+pub(super) fn part(text: &str) -> anyhow::Result<Range<usize>> {
+    let whole = |text: &str| text.trim().parse::<usize>().ok();
+    let ends = text.split_once("..");
+    let range = ends.and_then(|(from, to)| Some(whole(from)?..whole(to)?));
+    let range = range.filter(|range| !range.is_empty());
+    range.with_context(|| {
+        format!("\"{text}\" is no part, expected A..B with A below B, like 10..20 for the numbers 10 to 19")
+    })
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use photosurface::jobs::ExportError;
 use photosurface::write::{Format, WriteError};
 
 use super::file_camera::flagged;
+use super::messages::counted;
 
 /// The error with the flags that the settings come from.
 pub(super) fn in_words_of_flags(error: ExportError) -> anyhow::Error {
@@ -25,6 +26,15 @@ pub(super) fn in_words_of_flags(error: ExportError) -> anyhow::Error {
         ExportError::MorphingColors => anyhow!(
             "--animate=morph shows one mesh, and colours as the observer sees them (Doppler effect, black bodies) differ from \
              step to step; use --animate=frames, or a scene without these effects"
+        ),
+        ExportError::Part { only, steps } => anyhow!(
+            "--only is {}..{}, but there are {}",
+            only.start,
+            only.end,
+            counted(steps, "step")
+        ),
+        ExportError::PartOfAnimation => anyhow!(
+            "--only is for files of steps, and --animate shows all steps in one; make the animation in one run"
         ),
         ExportError::RepeatedLevel(tolerance) => {
             anyhow!("--lod names the tolerance {tolerance} twice")

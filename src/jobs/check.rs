@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::EffectCost;
 use super::budget::Fitted;
 use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
-use crate::pipeline::{Bounds, PlacedScene, PlacedSceneError, SurfaceOptions};
+use crate::pipeline::{Bounds, PlacedScene, PlacedSceneError};
 use crate::scene::Measure;
 use crate::spacetime::ViewModel;
 use crate::write::{Provenance, schema_of};
@@ -44,7 +44,7 @@ pub struct CheckedObject {
     pub measure: Measure,
     /// How many parts it has.
     pub parts: usize,
-    /// Number of vertices at rest.
+    /// Number of vertices at rest; a flat shape without a resolution has its coarsest form.
     pub vertices: usize,
     /// The largest Lorentz factor of the observer's velocity in the object's rest frame, over all steps.
     pub relative_gamma: f64,
@@ -54,8 +54,8 @@ pub struct CheckedObject {
     /// its place there; for a moving object, in the axes of its rest frame. Absent if the object has no vertices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_rest: Option<Bounds>,
-    /// The box around the places where these vertices are seen at the steps that were looked at, in the observer's frame.
-    /// Between vertices a photosurface may reach beyond.
+    /// The box around the places where these vertices, and of a flat shape many places between them, are seen at the steps
+    /// that were looked at, in the observer's frame. Between them a photosurface may reach beyond.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub photosurface: Option<Bounds>,
     /// The same at each of these steps: at all, or at so many as together have some million vertices, evenly spread from the
@@ -140,10 +140,6 @@ impl CheckedObject {
     ///
     /// An error is returned if the scene has no photosurfaces at a step.
     pub fn of_scene(placed: &PlacedScene) -> Result<Vec<Self>, PlacedSceneError> {
-        let options = SurfaceOptions {
-            subdivide: false,
-            ..SurfaceOptions::default()
-        };
         let joined = |boxes: Option<Bounds>, other: Option<Bounds>| match (boxes, other) {
             (Some(boxes), Some(other)) => Some(boxes.joined(other)),
             (boxes, other) => boxes.or(other),
@@ -173,15 +169,11 @@ impl CheckedObject {
                 }
             })
             .collect();
-        let vertices = objects.iter().map(|object| object.vertices).sum();
         let steps = placed.scene().steps();
-        for step in steps_looked_at(steps.len(), vertices) {
+        for step in steps_looked_at(steps.len(), placed.vertices_at_rest()) {
             let proper_time = steps[step];
-            let mut surfaces = placed.photosurfaces(step, options)?;
-            for object in &mut objects {
-                let parts = surfaces.by_ref().take(object.parts);
-                let boxes = parts.map(|surface| surface.mesh.bounds().map(Bounds::new));
-                let bounds = boxes.fold(None, joined);
+            for (object, extremes) in objects.iter_mut().zip(placed.seen_extremes(step)?) {
+                let bounds = extremes.bounds().map(Bounds::new);
                 object.photosurface = joined(object.photosurface, bounds);
                 object
                     .photosurface_at_steps
@@ -241,13 +233,16 @@ impl CheckedEffect {
     fn of(fitted: &Fitted) -> Vec<Self> {
         let placed = &fitted.placed;
         let costs = EffectCost::of(placed);
-        // As many vertices for a triangle as there are at rest.
+        // As many vertices for a triangle as there are at rest, and half a vertex for each triangle that refinement adds:
+        // a vertex inside a facet adds two.
         let vertices = placed.objects().zip(&fitted.predictions);
         let vertices = vertices.map(|((_, parts), prediction)| {
             let meshes = || parts.iter().map(|(_, part)| part.mesh());
             let vertices: usize = meshes().map(|mesh| mesh.vertex_count()).sum();
             let triangles: usize = meshes().map(|mesh| mesh.triangle_count()).sum();
-            prediction.triangles * vertices as f64 / triangles.max(1) as f64
+            let for_each = vertices as f64 / triangles.max(1) as f64;
+            let before = prediction.triangles_in;
+            before * for_each + 0.5 * (prediction.triangles - before)
         });
         let vertices: f64 = vertices.sum();
         let picture = PictureSettings::new(PictureView::Observer(PictureMethod::Rays));

@@ -1,7 +1,9 @@
 //! The export writes the photosurfaces of a placed scene to files, in any format, for one or several tolerances.
 
 use std::io::Write;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use super::clock::Clock;
 use super::file_camera::file_camera;
@@ -12,7 +14,9 @@ use super::{ExportError, ExportSettings, Fitted, Progress, Tally};
 use crate::material::Part;
 use crate::pipeline::{PlacedScene, SurfaceOptions};
 use crate::scene::Tolerance;
-use crate::write::{Format, ObserverCamera, Report, WriteError, replaced_data, write_whole};
+use crate::write::{
+    Fingerprint, Format, ObserverCamera, Report, Seal, WriteError, replaced_data, write_whole,
+};
 
 /// The result of an export at one level of detail.
 #[derive(Clone, Debug)]
@@ -28,6 +32,10 @@ pub struct Exported {
     pub report: Report,
     /// What colours of vertices do not show as pictures do.
     pub notes: Vec<LightNote>,
+    /// Of the files, those that an earlier run finished, and that were not made anew; the totals do not count them.
+    pub resumed: Vec<PathBuf>,
+    /// Whether everything in the files that were not made anew is certified.
+    pub resumed_are_certified: bool,
 }
 
 /// Writes the photosurfaces of a placed scene to `path`, in the format of its extension (.glb, .gltf or .ply), with the
@@ -72,7 +80,13 @@ pub fn export(
 /// An error is returned if the file cannot be written.
 pub fn write_report(path: &Path, report: &Report) -> Result<(), WriteError> {
     let text = report.to_json() + "\n";
-    write_whole(path, |writer| Ok(writer.write_all(text.as_bytes())?))
+    write_whole(path, |writer| {
+        let bytes = match report.seal {
+            Some(seal) => seal.close_text(text)?,
+            None => text.into_bytes(),
+        };
+        Ok(writer.write_all(&bytes)?)
+    })
 }
 
 /// One level of detail of an export, before anything is made.
@@ -81,8 +95,12 @@ pub struct ExportLevel {
     placed: PlacedScene,
     settings: ExportSettings,
     format: Format,
+    /// Of everything beside the steps that files depend on, if they may be resumed.
+    fingerprint: Option<Fingerprint>,
     /// One file for each step, or one for all steps.
     files: Vec<PathBuf>,
+    /// The steps in the files.
+    steps: Range<usize>,
     report: Option<PathBuf>,
     camera: Option<ObserverCamera>,
     /// Whether the camera would see the marker.
@@ -109,15 +127,22 @@ pub fn export_levels(
     let (camera, sees_marker) = camera.map_or((None, false), |(camera, sees)| (Some(camera), sees));
     let level = |placed: PlacedScene, suffix: &str| {
         let path = with_suffix(path, suffix);
+        let count = placed.scene().steps().len();
+        let steps = settings.steps(count);
         ExportLevel {
             files: match settings.split {
-                true => file_for_each_step(&path, placed.scene().steps().len()),
+                true => {
+                    let all = file_for_each_step(&path, count);
+                    all.get(steps.clone()).unwrap_or_default().to_vec()
+                }
                 false => vec![path],
             },
+            steps,
             report: settings
                 .report
                 .as_ref()
                 .map(|report| with_suffix(report, suffix)),
+            fingerprint: settings.fingerprint(&placed, format),
             settings: settings.clone(),
             camera: camera.clone(),
             sees_marker,
@@ -186,7 +211,48 @@ impl ExportLevel {
     /// The number of pieces of work for [`Progress`]: one for each photosurface of this level.
     pub fn pieces(&self) -> usize {
         let parts: usize = self.placed.objects().map(|(_, parts)| parts.len()).sum();
-        parts * self.placed.scene().steps().len()
+        parts * self.steps.len()
+    }
+
+    /// The steps in a file, which is counted from 0.
+    pub fn steps_of(&self, file: usize) -> Range<usize> {
+        match self.settings.split {
+            true => self.steps.start + file..self.steps.start + file + 1,
+            false => self.steps.clone(),
+        }
+    }
+
+    /// The fingerprint of a file, which is counted from 0, if files may be resumed.
+    fn fingerprint(&self, file: usize) -> Option<Fingerprint> {
+        Some(self.fingerprint?.with("steps", &self.steps_of(file)))
+    }
+
+    /// The seal of a report of these files.
+    fn report_seal(&self, is_certified: bool) -> Option<Seal> {
+        let times = self.settings.report_times;
+        Some(Seal {
+            fingerprint: self.fingerprint?.with("report", &(&self.steps, times)),
+            is_certified,
+        })
+    }
+
+    /// For each file its seal if an earlier run has finished it, so that it is not made anew. A file of all steps is only
+    /// finished if its report is, too.
+    pub fn finished(&self) -> Vec<Option<Seal>> {
+        let finished = |file: usize| Seal::of_file(&self.files[file], self.fingerprint(file)?);
+        let all = 0..self.files.len();
+        match self.settings.split || self.has_finished_report() {
+            true => all.map(finished).collect(),
+            false => all.map(|_| None).collect(),
+        }
+    }
+
+    /// Whether an earlier run has finished the report, or there is none.
+    fn has_finished_report(&self) -> bool {
+        let Some((path, seal)) = self.report.as_ref().zip(self.report_seal(true)) else {
+            return self.report.is_none();
+        };
+        Seal::of_file(path, seal.fingerprint).is_some()
     }
 
     /// Checks that a file can hold the photosurfaces, as far as that is known before they are made.
@@ -196,10 +262,7 @@ impl ExportLevel {
     /// An error is returned if there are more bytes or vertices than the format has room for, or numbers beyond its
     /// range.
     pub fn check(&self) -> Result<(), ExportError> {
-        let steps = match self.settings.split {
-            true => 1,
-            false => self.placed.scene().steps().len(),
-        };
+        let steps = self.steps_of(0).len();
         let fits = self.format.min_size(&self.placed, steps);
         fits.and_then(|_| self.format.check_range(&self.placed))
             .map_err(|source| ExportError::of_file(&self.files[0], source))
@@ -212,14 +275,17 @@ impl ExportLevel {
             subdivide: self.settings.subdivide,
             ..self.format.surface_options(self.placed.scene())
         };
-        let fitted = wanted
-            .subdivide
+        let finished = self.finished();
+        let is_finished = finished.iter().all(Option::is_some);
+        let is_limited = self.settings.max_triangles < u64::MAX;
+        let fitted = (wanted.subdivide && is_limited && !is_finished)
             .then(|| Fitted::new(self.placed.clone(), wanted, self.settings.max_triangles));
         clock.stop("predict");
         FittedExport {
             level: self,
             wanted,
             fitted,
+            finished,
             clock,
         }
     }
@@ -231,6 +297,8 @@ pub struct FittedExport {
     level: ExportLevel,
     wanted: SurfaceOptions,
     fitted: Option<Fitted>,
+    /// For each file its seal if an earlier run has finished it.
+    finished: Vec<Option<Seal>>,
     clock: Clock,
 }
 
@@ -255,27 +323,59 @@ impl FittedExport {
         before_it_appears: impl FnOnce(&Report) -> Result<(), WriteError>,
     ) -> Result<Exported, ExportError> {
         let mut work = self.work(progress);
-        let files = &self.level.files;
-        let steps = work.placed.scene().steps().len();
-        let report = if self.level.settings.split {
-            for (step, file) in files.iter().enumerate() {
-                let written = work.write_file(file, step..step + 1, |_| Ok(()));
+        let level = &self.level;
+        let files = &level.files;
+        let seals = self.finished.iter().flatten();
+        let resumed_are_certified = seals.clone().all(|seal| seal.is_certified);
+        let resumed: Vec<PathBuf> = files
+            .iter()
+            .zip(&self.finished)
+            .filter_map(|(file, seal)| seal.map(|_| file.clone()))
+            .collect();
+        let take_report = |work: &mut Work<'_>| {
+            let is_certified = resumed_are_certified && work.tally.is_certified();
+            Report {
+                resumed: resumed.iter().map(|f| f.display().to_string()).collect(),
+                seal: level.report_seal(is_certified),
+                ..work.take_report()
+            }
+        };
+        for (file, seal) in self.finished.iter().enumerate() {
+            if let Some(seal) = seal {
+                let told = work.resume(&files[file], level.steps_of(file), seal);
+                told.map_err(|error| ExportError::of_file(&files[file], error))?;
+            }
+        }
+        let report = if level.settings.split {
+            for (number, file) in files.iter().enumerate() {
+                if self.finished[number].is_some() {
+                    continue;
+                }
+                work.fingerprint = level.fingerprint(number);
+                let written = work.write_file(file, level.steps_of(number), |_| Ok(()));
                 written.map_err(|error| ExportError::of_file(file, error))?;
             }
-            let report = work.take_report();
-            let done = before_it_appears(&report);
-            done.map_err(|error| ExportError::of_file(&files[0], error))?;
+            let report = take_report(&mut work);
+            if resumed.len() < files.len() || !level.has_finished_report() {
+                let done = before_it_appears(&report);
+                done.map_err(|error| ExportError::of_file(&level.files[0], error))?;
+            }
             report
+        } else if !resumed.is_empty() {
+            take_report(&mut work)
         } else {
             let mut report = None;
-            let written = work.write_file(&files[0], 0..steps, |work| {
-                before_it_appears(report.insert(work.take_report()))
+            work.fingerprint = level.fingerprint(0);
+            let written = work.write_file(&files[0], level.steps.clone(), |work| {
+                before_it_appears(report.insert(take_report(work)))
             });
             written.map_err(|error| ExportError::of_file(&files[0], error))?;
-            report.unwrap_or_else(|| work.take_report())
+            report.unwrap_or_else(|| take_report(&mut work))
         };
         Ok(Exported {
             files: files.clone(),
+            resumed,
+            resumed_are_certified,
             notes: work.notes(),
             data_files: work.data_files,
             tally: work.tally,
@@ -295,10 +395,11 @@ impl FittedExport {
         progress: &dyn Progress,
     ) -> Result<Exported, WriteError> {
         let mut work = self.work(progress);
-        let steps = work.placed.scene().steps().len();
-        work.write_stream(out, 0..steps)?;
+        work.write_stream(out, self.level.steps.clone())?;
         Ok(Exported {
             files: vec![],
+            resumed: vec![],
+            resumed_are_certified: true,
             data_files: vec![],
             report: work.take_report(),
             notes: work.notes(),
@@ -329,6 +430,9 @@ impl FittedExport {
             has_times: level.settings.report_times,
             outputs: vec![],
             data_files: vec![],
+            fingerprint: None,
+            uncertified_before: 0,
+            last: Instant::now(),
         }
     }
 }

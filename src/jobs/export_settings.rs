@@ -1,5 +1,6 @@
 //! Settings and errors of an export.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
@@ -10,13 +11,22 @@ use super::{DEFAULT_MAX_TRIANGLES, OutputError};
 use crate::pipeline::PlacedScene;
 use crate::render::Textures;
 use crate::scene::Tolerance;
-use crate::write::{FRAMES_PER_SECOND, Format, Playback, Provenance, StageTime, WriteError};
+use crate::write::{
+    FRAMES_PER_SECOND, Fingerprint, Format, Playback, Provenance, StageTime, WriteError,
+};
 
 /// Settings for the export of a placed scene.
 #[derive(Clone, Debug)]
 pub struct ExportSettings {
     /// Whether each step has a file of its own: `out_step000.glb`, `out_step001.glb`, ...
     pub split: bool,
+    /// Which steps are written, counted from 0, with the names and numbers that they have among all: with `None` all of
+    /// them. Triangles are shared out among all steps all the same.
+    pub only: Option<Range<usize>>,
+    /// The fingerprint of the files that the scene was read from, if files that an earlier run finished are to stay: a file
+    /// that is whole, and was made of the same scene, files and settings by the same version. Files that are made get a
+    /// [`Seal`](crate::write::Seal) by which a later run knows them. With `None` all files are made, without seals.
+    pub resume: Option<Fingerprint>,
     /// How the steps of one file follow each other as an animation; with `None` all steps are visible at once.
     pub playback: Option<Playback>,
     /// What the observer's camera in a glTF file shows of the sky; `None` for a file without a camera.
@@ -29,7 +39,7 @@ pub struct ExportSettings {
     pub subdivide: bool,
     /// Limit on the triangles of all photosurfaces of one level together. If a tolerance needs more, the largest gaps
     /// are closed first and the result is not certified. The triangles of a source are always kept, even if they exceed
-    /// the limit.
+    /// the limit. With `u64::MAX` there is none, and nothing is predicted before the first step is made.
     pub max_triangles: u64,
     /// The file of a JSON [`Report`](crate::write::Report), if one is to be written; each level has its own.
     pub report: Option<PathBuf>,
@@ -51,6 +61,8 @@ impl Default for ExportSettings {
     fn default() -> Self {
         Self {
             split: false,
+            only: None,
+            resume: None,
             playback: None,
             camera: None,
             levels: vec![],
@@ -102,6 +114,17 @@ pub enum ExportError {
     /// An animation is asked for together with a file for each step.
     #[error("an animation is one file, expected it without a file for each step")]
     SplitPlayback,
+    /// Steps are asked for that the scene does not have.
+    #[error("the steps {}..{} are asked for, but there are {steps}", only.start, only.end)]
+    Part {
+        /// The steps that are asked for.
+        only: Range<usize>,
+        /// Number of steps of the scene.
+        steps: usize,
+    },
+    /// A part of the steps is asked for together with an animation of them.
+    #[error("an animation shows all steps, expected it without a part of them")]
+    PartOfAnimation,
     /// Two levels of detail have the same tolerance.
     #[error("the tolerance {0} is given twice among the levels of detail, expected each one once")]
     RepeatedLevel(Tolerance),
@@ -136,10 +159,33 @@ impl ExportError {
 }
 
 impl ExportSettings {
+    /// The steps that are written, of so many.
+    pub(super) fn steps(&self, count: usize) -> Range<usize> {
+        self.only.clone().unwrap_or(0..count)
+    }
+
+    /// The fingerprint of files of a placed scene, if there is one of its files: everything beside the steps of a file that
+    /// their bytes depend on.
+    pub(super) fn fingerprint(&self, placed: &PlacedScene, format: Format) -> Option<Fingerprint> {
+        let playback_and_camera = (self.playback, &self.camera);
+        let budget = (self.subdivide, self.max_triangles);
+        Some(
+            self.resume?
+                .with("scene", placed.scene())
+                .with("export", &(format, self.split, playback_and_camera, budget)),
+        )
+    }
+
     /// Checks that the playback is possible with the format, the scene and the other settings.
     pub(super) fn check(&self, placed: &PlacedScene, format: Format) -> Result<(), ExportError> {
         if self.camera.is_some() && format == Format::Ply {
             return Err(ExportError::NoCamera);
+        }
+        let steps = placed.scene().steps().len();
+        if let Some(only) = self.only.clone()
+            && (only.is_empty() || only.end > steps)
+        {
+            return Err(ExportError::Part { only, steps });
         }
         let Some(playback) = self.playback else {
             return Ok(());
@@ -149,6 +195,8 @@ impl ExportSettings {
             Err(ExportError::NoTime)
         } else if self.split {
             Err(ExportError::SplitPlayback)
+        } else if self.only.is_some() {
+            Err(ExportError::PartOfAnimation)
         } else if placed.scene().steps().len() < 2 {
             Err(ExportError::OneStep)
         } else if !FRAMES_PER_SECOND.contains(&frames_per_second) {

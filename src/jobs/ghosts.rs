@@ -113,7 +113,7 @@ fn rest_to_seen_middle(view: &View, middle_rest: DVec3) -> DAffine3 {
 /// The meshes of all objects under a model without delay, whose edges stay straight.
 fn straight_ghosts(placed: &PlacedScene, model: ViewModel, step: usize) -> Vec<Mesh> {
     let mut meshes = Vec::new();
-    for (object, parts) in placed.objects() {
+    for (object, parts) in placed.looked_at() {
         if object.view_model() == model {
             continue;
         }

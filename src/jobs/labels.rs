@@ -53,7 +53,7 @@ pub(super) fn draw_labels(
         low: DVec2::ZERO,
         high: corner,
     }];
-    for (object, parts) in placed.objects() {
+    for (object, parts) in placed.looked_at() {
         let Some(view) = placed.model_view(object, step) else {
             continue;
         };

@@ -3,13 +3,16 @@
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use serde::Serialize;
 use thiserror::Error;
 
-use crate::material::Model;
+use crate::material::{Material, Model, Part};
+use crate::mesh::Mesh;
 use crate::read::{Access, Findings, ReadError, read_named_model, with_normals};
 use crate::scene::{Scene, Source};
-use crate::shape::ShapeError;
+use crate::shape::{Appearance, Shape, ShapeError};
 
 /// Reasons why an object has no geometry.
 #[derive(Debug, Error)]
@@ -59,7 +62,8 @@ pub type FileFindings = Vec<(PathBuf, Findings)>;
 
 /// One model for each object of a scene, in the order of the objects, and the findings about the files. File names are
 /// relative to `directory`, and a file is read only if [`Access::default`] allows it. A file that several objects use
-/// is read once.
+/// is read once, and a shape that several objects have is made once. A box, grid or lattice without a resolution has its
+/// coarsest form.
 ///
 /// # Errors
 ///
@@ -87,6 +91,7 @@ impl Access {
         let mut known: HashMap<PathBuf, Model> = HashMap::new();
         // The same with normals: objects that ask for the same share them.
         let mut shaded: HashMap<(PathBuf, String), Model> = HashMap::new();
+        let mut shapes = Shapes::default();
         let mut files = Vec::new();
         let mut models = Vec::with_capacity(scene.objects().len());
         for object in scene.objects() {
@@ -113,15 +118,19 @@ impl Access {
                         if let Some((_, findings)) = of_file {
                             findings.notes.extend(found.notes);
                         }
+                        // Once for all who share the model: a clone knows what its original knows.
+                        model.bounds();
                         shaded.insert(key.clone(), model);
                     }
                     shaded[&key].clone()
                 }
                 Source::Shape(shape, appearance) => {
-                    shape.model(appearance).map_err(|source| LoadError::Shape {
-                        object: object.name.clone(),
-                        source,
-                    })?
+                    shapes
+                        .model(shape, appearance)
+                        .map_err(|source| LoadError::Shape {
+                            object: object.name.clone(),
+                            source,
+                        })?
                 }
                 Source::Model(model) => Model::clone(model),
             };
@@ -129,4 +138,43 @@ impl Access {
         }
         Ok((models, files))
     }
+}
+
+/// The models of shapes, each made once.
+#[derive(Default)]
+struct Shapes {
+    /// Meshes by the shape in JSON.
+    meshes: HashMap<String, Mesh>,
+    /// Materials by what determines them, in JSON.
+    materials: HashMap<String, Arc<Material>>,
+}
+
+impl Shapes {
+    /// The model of a shape. A flat shape whose facets only the tolerance determines has its coarsest form.
+    fn model(&mut self, shape: &Shape, appearance: &Appearance) -> Result<Model, ShapeError> {
+        // Without refinement the shape gets its default resolution after all.
+        shape.check_flat_size()?;
+        let coarsest = shape.coarsest_flat();
+        let shape = coarsest.as_ref().unwrap_or(shape);
+        let key = json(shape);
+        let mesh = match self.meshes.get(&key) {
+            Some(mesh) => mesh.clone(),
+            None => {
+                let mesh = shape.mesh()?;
+                self.meshes.insert(key, mesh.clone());
+                mesh
+            }
+        };
+        let key = json(&(appearance, shape.checker_cells()));
+        let material = self.materials.entry(key);
+        let material = material.or_insert_with(|| Arc::new(shape.material(appearance)));
+        Ok(Model {
+            parts: vec![Part::new("", mesh, Some(material.clone()))?],
+            origin: None,
+        })
+    }
+}
+
+fn json(value: &impl Serialize) -> String {
+    serde_json::to_string(value).expect("shapes and colours are names and numbers")
 }

@@ -69,7 +69,7 @@ pub use page::{PageError, PageSettings, page, page_to_file};
 pub use passage::{PassageError, fly_by, passage, passing_observer};
 pub use picture_settings::{PictureMethod, PictureSettings, PictureView};
 pub use pictures::{Variant, render, render_side_by_side, render_to_files};
-pub use progress::{Cancelled, Progress};
+pub use progress::{Cancelled, Finished, Progress};
 pub use rendered::{EmptyView, RenderError, Rendered, ViewCost};
 pub use tally::Tally;
 pub use vertex_colors::LightNote;

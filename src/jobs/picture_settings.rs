@@ -1,5 +1,6 @@
 //! Which pictures of a scene are drawn, from where and how.
 
+use std::collections::BTreeSet;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -14,6 +15,7 @@ use crate::pipeline::SurfaceOptions;
 use crate::render::{PictureOptions, PictureSize};
 use crate::shape::Color;
 use crate::tessellate::Precision;
+use crate::write::Fingerprint;
 
 /// Which pictures of a scene are drawn, and from where.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +62,8 @@ pub struct PictureSettings {
     pub columns: Option<NonZeroUsize>,
     /// Which of several pictures are drawn, counted from 0, as they are among all: with `None` all of them.
     pub only: Option<Range<usize>>,
+    /// The numbers of pictures that are not drawn although they are among these, since they are there already.
+    pub skipped: BTreeSet<usize>,
     /// Number of rays along each side of a pixel: N gives N x N rays per pixel. More than 1024 count as 1024.
     pub samples: NonZeroU32,
     /// The colour where nothing is seen.
@@ -86,6 +90,7 @@ impl PictureSettings {
             camera: CameraSettings::new(size),
             columns: None,
             only: None,
+            skipped: BTreeSet::new(),
             samples: NonZeroU32::new(options.samples).unwrap_or(NonZeroU32::MIN),
             background: options.background,
             guides: match view {
@@ -118,6 +123,21 @@ impl PictureSettings {
             Some(only) => only.start.min(count)..only.end.min(count),
             None => 0..count,
         }
+    }
+
+    /// Whether a picture, which is counted from 0, is drawn of a scene with `steps` steps.
+    pub(super) fn is_drawn(&self, number: usize, steps: usize) -> bool {
+        self.drawn(steps).contains(&number) && !self.skipped.contains(&number)
+    }
+
+    /// The fingerprint of a picture with these settings, whose scenes, with their files, have this fingerprint.
+    pub fn fingerprint(&self, scenes: Fingerprint, number: usize) -> Fingerprint {
+        let whole = Self {
+            only: None,
+            skipped: BTreeSet::new(),
+            ..self.clone()
+        };
+        scenes.with("pictures", &whole).with("number", &number)
     }
 
     /// The files that [`render_to_files`](super::render_to_files) makes of a scene with `steps` steps, in the order of the pictures: `path`

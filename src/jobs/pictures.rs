@@ -1,6 +1,7 @@
 //! Pictures of all steps of a scene, or of several scenes beside each other, drawn in one call.
 
 use std::path::Path;
+use std::time::Instant;
 
 use glam::{DVec2, DVec3};
 
@@ -12,7 +13,7 @@ use super::layout::{Cell, Page, Shape};
 use super::observer_frame::{ObserverFrame, heading};
 use super::outside_camera::{Contents, OutsideCamera};
 use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
-use super::progress::Progress;
+use super::progress::{Finished, Progress};
 use super::rendered::{RenderError, Rendered};
 use super::seen::sky_of;
 use super::views::Views;
@@ -151,8 +152,12 @@ impl<'a> Table<'a> {
         let settings = views[0].settings;
         let steps = views[0].steps().end;
         let pages = settings.pages(shape, steps);
-        let drawn = pages.get(settings.drawn(steps)).unwrap_or_default();
-        let cells = drawn.iter().flatten().map(Vec::len).sum::<usize>();
+        let drawn = pages.iter().enumerate();
+        let drawn = drawn.filter(|(number, _)| settings.is_drawn(*number, steps));
+        let cells = drawn
+            .flat_map(|(_, page)| page)
+            .map(Vec::len)
+            .sum::<usize>();
         let rows = settings.camera.size.height() as usize * cells * settings.views_of_a_cell();
         views[0].progress.begin(rows);
         frame_observer(&mut views)?;
@@ -204,16 +209,38 @@ impl<'a> Table<'a> {
         mut finished: impl FnMut(usize, &Picture) -> Result<(), E>,
     ) -> Result<Rendered, E> {
         let mut before = 0;
-        let drawn = self.settings.drawn(self.steps);
+        let (settings, steps) = (self.settings, self.steps);
+        let progress = self.views[0].progress;
+        let mut last = Instant::now();
         for (number, page) in std::mem::take(&mut self.pages).iter().enumerate() {
-            if drawn.contains(&number) {
+            if settings.is_drawn(number, steps) {
+                let uncertified = self.uncertified();
                 let picture = self.picture(page, before)?;
+                let now = Instant::now();
+                progress.finished(&Finished {
+                    steps: match settings.picture_count(steps) {
+                        1 => 0..steps,
+                        _ => number..number + 1,
+                    },
+                    of: steps,
+                    seconds: (now - last).as_secs_f64(),
+                    is_certified: self.uncertified() == uncertified,
+                    file: None,
+                    is_resumed: false,
+                });
+                last = now;
                 finished(number, &picture)?;
             }
             before += page.iter().map(Vec::len).sum::<usize>();
         }
         let each = self.views.into_iter().map(|views| views.rendered);
         Ok(each.fold(Rendered::default(), Rendered::with))
+    }
+
+    /// How many of the photosurfaces in the pictures drawn so far are not certified.
+    fn uncertified(&self) -> usize {
+        let each = self.views.iter();
+        each.map(|views| views.rendered.tally.uncertified).sum()
     }
 
     /// One picture, before which there are so many cells.

@@ -3,21 +3,17 @@
 use glam::DVec3;
 
 use super::extent::{outermost, scaled};
-use crate::pipeline::{PlacedScene, PlacedSceneError, SurfaceOptions};
+use crate::pipeline::{PlacedScene, PlacedSceneError};
 
-/// Where the source vertices of a scene's objects are seen at one step, in the observer's frame, in scene units.
+/// Where the vertices of a scene's objects before any refinement are seen at one step, in the observer's frame, in scene
+/// units.
 pub(super) fn seen_vertices(
     placed: &PlacedScene,
     step: usize,
 ) -> Result<Vec<DVec3>, PlacedSceneError> {
-    let options = SurfaceOptions {
-        subdivide: false,
-        ..SurfaceOptions::default()
-    };
-    let surfaces = placed.photosurfaces(step, options)?;
-    Ok(surfaces
-        .flat_map(|surface| surface.mesh.positions().to_vec())
-        .collect())
+    let mut places = Vec::new();
+    placed.seen_places(step, |of_part| places.extend_from_slice(of_part))?;
+    Ok(places)
 }
 
 /// The outermost directions, as unit vectors, in which these positions are seen from the origin.

@@ -34,7 +34,7 @@ impl Tally {
     }
 
     /// Adds everything that another tally holds.
-    pub(super) fn merge(&mut self, other: Self) {
+    pub fn merge(&mut self, other: Self) {
         self.photosurfaces += other.photosurfaces;
         self.triangles += other.triangles;
         self.uncertified += other.uncertified;

@@ -1,18 +1,20 @@
 //! Makes photosurfaces and writes them one after the other, in any format.
 
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use super::ahead::in_order;
 use super::clock::Clock;
 use super::vertex_colors::{LightNote, VertexColors};
-use super::{Cancelled, Progress, Tally};
+use super::{Cancelled, Finished, Progress, Tally};
 use crate::material::Part;
 use crate::pipeline::{Facts, Photosurface, PlacedScene, SurfaceOptions};
 use crate::write::{
-    Export, Format, GltfFile, GltfOutput, ObserverCamera, OutputFile, Playback, Provenance, Report,
-    Target, WriteError, write_ply, write_whole, write_whole_gltf, write_whole_target,
+    Export, Fingerprint, Format, GltfFile, GltfOutput, ObserverCamera, OutputFile, Playback,
+    Provenance, Report, Seal, Target, WriteError, write_sealed_gltf, write_sealed_ply,
+    write_whole_target,
 };
 
 /// An export at work: its settings, and the totals and facts of the photosurfaces made so far.
@@ -39,6 +41,12 @@ pub(super) struct Work<'a> {
     pub(super) outputs: Vec<OutputFile>,
     /// Data files that belong to `.gltf` files.
     pub(super) data_files: Vec<PathBuf>,
+    /// The fingerprint of the file that is being written, if it gets a seal.
+    pub(super) fingerprint: Option<Fingerprint>,
+    /// How many photosurfaces of other files are not certified.
+    pub(super) uncertified_before: usize,
+    /// When something was finished last.
+    pub(super) last: Instant,
 }
 
 impl Work<'_> {
@@ -89,12 +97,24 @@ impl Work<'_> {
             }
             return Ok(());
         }
+        let is_of_several = steps.len() > 1;
+        let parts: usize = placed.objects().map(|(_, parts)| parts.len()).sum();
+        let (mut made, mut are_certified) = (0, true);
         in_order(placed, wanted, steps, |photosurface| {
             self.count(&photosurface.facts)?;
             self.clock.stop("photosurface");
             let photosurface = self.finished(photosurface);
             file.add(&photosurface)?;
             self.clock.stop("write");
+            made += 1;
+            are_certified &= photosurface.facts.certificate.complete;
+            if made % parts == 0 {
+                let step = photosurface.facts.step;
+                if is_of_several {
+                    self.tell(step..step + 1, are_certified, None);
+                }
+                are_certified = true;
+            }
             Ok(())
         })
     }
@@ -107,6 +127,9 @@ impl Work<'_> {
             file.set_camera(camera.clone());
         }
         self.fill(&mut file, steps)?;
+        if let Some(seal) = self.seal() {
+            file.set_seal(&seal);
+        }
         file.finish()?;
         self.clock.stop("write");
         Ok(())
@@ -137,7 +160,7 @@ impl Work<'_> {
             photosurfaces: &photosurfaces,
             playback: None,
         };
-        write_ply(&export, &mut *out)?;
+        write_sealed_ply(&export, self.seal().as_ref(), &mut *out)?;
         self.clock.stop("write");
         Ok(out.flush()?)
     }
@@ -149,6 +172,8 @@ impl Work<'_> {
         steps: Range<usize>,
         before_it_appears: impl FnOnce(&mut Self) -> Result<(), WriteError>,
     ) -> Result<(), WriteError> {
+        self.uncertified_before = self.tally.uncertified;
+        let numbers = steps.clone();
         match self.format {
             Format::Glb => write_whole_target(path, |target| {
                 let bytes = match target {
@@ -158,6 +183,9 @@ impl Work<'_> {
                             directory,
                         };
                         self.glb(steps, target)?;
+                        if let Some(seal) = self.seal() {
+                            seal.close(file)?;
+                        }
                         file.metadata()?.len()
                     }
                     Target::Stream(out) => {
@@ -169,17 +197,33 @@ impl Work<'_> {
                 self.has_written(path, bytes);
                 before_it_appears(self)
             }),
-            Format::Ply => write_whole(path, |writer| {
-                let mut out = Counted::new(writer);
-                self.ply(steps, &mut out)?;
-                let bytes = out.bytes;
+            Format::Ply => write_whole_target(path, |target| {
+                let bytes = match target {
+                    Target::File { file, .. } => {
+                        let mut writer = BufWriter::new(&mut *file);
+                        let mut out = Counted::new(&mut writer);
+                        self.ply(steps, &mut out)?;
+                        let bytes = out.bytes;
+                        drop(writer);
+                        if let Some(seal) = self.seal() {
+                            seal.close(file)?;
+                        }
+                        bytes
+                    }
+                    Target::Stream(out) => {
+                        let mut out = Counted::new(out);
+                        self.ply(steps, &mut out)?;
+                        out.bytes
+                    }
+                };
                 self.has_written(path, bytes);
                 before_it_appears(self)
             }),
             Format::Gltf => {
+                let work = &mut *self;
                 let content = |output: GltfOutput<'_>| {
-                    self.gltf(steps, output)?;
-                    Ok(self)
+                    work.gltf(steps, output)?;
+                    Ok(work)
                 };
                 let written = |work: &mut Self, files: [(PathBuf, u64); 2]| {
                     for (file, bytes) in &files {
@@ -189,10 +233,65 @@ impl Work<'_> {
                     work.data_files.push(data);
                     before_it_appears(work)
                 };
-                write_whole_gltf(path, content, written)?;
-                Ok(())
+                let seal = |work: &&mut Self| work.seal();
+                write_sealed_gltf(path, content, seal, written).map(drop)
             }
+        }?;
+        let length = |file: &Path| std::fs::metadata(file).map_or(0, |data| data.len());
+        let is_certified = self.tally.uncertified == self.uncertified_before;
+        if self.format == Format::Gltf
+            && let Some(data) = self.data_files.last().cloned()
+        {
+            let bytes = length(&data);
+            self.tell(numbers.clone(), is_certified, Some((&data, bytes)));
         }
+        self.tell(numbers, is_certified, Some((path, length(path))));
+        Ok(())
+    }
+
+    /// The seal of the file that is being written, if it gets one.
+    fn seal(&self) -> Option<Seal> {
+        Some(Seal {
+            fingerprint: self.fingerprint?,
+            is_certified: self.tally.uncertified == self.uncertified_before,
+        })
+    }
+
+    /// Leaves a file of some steps as an earlier run has finished it.
+    pub(super) fn resume(
+        &mut self,
+        path: &Path,
+        steps: Range<usize>,
+        seal: &Seal,
+    ) -> Result<(), WriteError> {
+        let parts: usize = self.placed.objects().map(|(_, parts)| parts.len()).sum();
+        let told = self.progress.advance(parts * steps.len());
+        told.map_err(|Cancelled| WriteError::Cancelled)?;
+        let bytes = std::fs::metadata(path).map_or(0, |data| data.len());
+        self.progress.finished(&Finished {
+            steps,
+            of: self.placed.scene().steps().len(),
+            seconds: 0.0,
+            is_certified: seal.is_certified,
+            file: Some((path, bytes)),
+            is_resumed: true,
+        });
+        Ok(())
+    }
+
+    /// Tells of a file, or of steps that go into one.
+    fn tell(&mut self, steps: Range<usize>, is_certified: bool, file: Option<(&Path, u64)>) {
+        let now = Instant::now();
+        let seconds = (now - self.last).as_secs_f64();
+        self.last = now;
+        self.progress.finished(&Finished {
+            steps,
+            of: self.placed.scene().steps().len(),
+            seconds,
+            is_certified,
+            file,
+            is_resumed: false,
+        });
     }
 
     fn has_written(&mut self, file: &Path, bytes: u64) {
@@ -239,6 +338,8 @@ impl Work<'_> {
             },
             provenance: self.provenance.clone(),
             outputs: std::mem::take(&mut self.outputs),
+            resumed: vec![],
+            seal: None,
         }
     }
 }

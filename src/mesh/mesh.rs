@@ -270,6 +270,25 @@ impl Mesh {
             })
     }
 
+    /// Which data the mesh holds: two meshes of one identity share all of them, as long as both are there.
+    pub(crate) fn identity(&self) -> MeshIdentity {
+        let [positions, normals] = self.vertices.addresses();
+        let address = |data: Option<*const ()>| data.map_or(0, |data| data as usize);
+        let mut data = vec![positions, normals, Arc::as_ptr(&self.triangles) as usize];
+        data.push(address(
+            self.tangents.as_ref().map(|data| Arc::as_ptr(data).cast()),
+        ));
+        data.push(address(
+            self.colors.as_ref().map(|data| Arc::as_ptr(data).cast()),
+        ));
+        data.extend(
+            self.texture_coordinates
+                .iter()
+                .map(|set| Arc::as_ptr(set) as usize),
+        );
+        MeshIdentity(data)
+    }
+
     /// The mesh without places on textures, and without the tangents that these make.
     pub(crate) fn without_texture_coordinates(self) -> Self {
         Self {
@@ -457,6 +476,10 @@ impl PartialEq for Mesh {
             && self.normals() == other.normals()
     }
 }
+
+/// The addresses of the data that a mesh shares with its clones.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct MeshIdentity(Vec<usize>);
 
 /// Something known of a mesh that is no part of what it is.
 #[derive(Clone, Debug)]

@@ -17,6 +17,7 @@ pub use check::MeshError;
 pub(crate) use check::check_triangles;
 pub(crate) use extent::Extent;
 pub use mesh::Mesh;
+pub(crate) use mesh::MeshIdentity;
 pub(crate) use triangles::Triangles;
 pub(crate) use values::{VALUES_PER_JOB, flattened, unit_or_zero};
 pub(crate) use vectors::{Places, Vectors};

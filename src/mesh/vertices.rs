@@ -110,6 +110,19 @@ impl Vertices {
         }
     }
 
+    /// Where the positions and the normals are held, 0 where there are none.
+    pub(super) fn addresses(&self) -> [usize; 2] {
+        match self {
+            Self::Held { positions, normals } => [
+                Arc::as_ptr(positions) as usize,
+                normals
+                    .as_ref()
+                    .map_or(0, |normals| Arc::as_ptr(normals) as usize),
+            ],
+            Self::Computed(computed) => [Arc::as_ptr(computed) as usize; 2],
+        }
+    }
+
     pub(super) fn has_normals(&self) -> bool {
         match self {
             Self::Held { normals, .. } => normals.is_some(),

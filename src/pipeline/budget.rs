@@ -5,6 +5,8 @@
 //! budget. Then each object is granted a number of triangles at each step; all grants together are within the budget,
 //! even where the predictions are wrong.
 
+use rayon::prelude::*;
+
 use super::forecast::{ObjectForecast, examined_steps};
 use super::placed_object::Granted;
 use super::predicting::{Predicted, predict};
@@ -63,7 +65,7 @@ impl PlacedScene {
 
     /// The predictions for each object.
     fn forecast(&self, wanted: SurfaceOptions) -> Forecast {
-        let objects = 0..self.objects.len();
+        let objects = (0..self.objects.len()).into_par_iter();
         objects
             .map(|object| self.predict_some(object, wanted))
             .collect()

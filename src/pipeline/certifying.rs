@@ -55,8 +55,12 @@ pub(super) fn certificate(
     let Measured {
         gap,
         surface_gap,
-        counts,
+        mut counts,
     } = measured;
+    if let Some(least) = tolerance.least_of_round(seen.extremes.nearest) {
+        counts.minimum_triangles = least;
+        counts.minimum_with_source = least;
+    }
     let gamma_beta = tolerance.view.relative_velocity().gamma_beta();
     let gap = gamma_beta * gap * (1.0 + 4.0 * f64::EPSILON);
     let bounds = Bounds {

@@ -4,7 +4,7 @@
 //! the deviation of facets from a curved surface, and the gap `e` of an [`Allowance`], are lengths in the object's rest
 //! frame. A certificate adds up, in the observer's frame, `gamma beta e`, curvature and rounding.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use super::mapped_mesh::MappedMesh;
@@ -13,10 +13,11 @@ use crate::light_cone::{Extremes, View};
 use crate::material::Part;
 use crate::mesh::Mesh;
 use crate::scene::{Measure, Tolerance, Unit};
+use crate::shape::Shape;
 use crate::spacetime::length;
 use crate::tessellate::{
-    Allowance, Motion, Precision, Singles, largest_gap, largest_stretch, local_stretch,
-    nearest_point, rounding_bound,
+    About, Allowance, Allowed, Motion, Precision, Sight, Singles, largest_gap, largest_stretch,
+    local_stretch, nearest_point, needed, rounding_bound,
 };
 
 /// The fraction of a curved shape's tolerance that its facets may take by their distance from the curved surface; the
@@ -69,6 +70,8 @@ pub(super) struct StepTolerance {
     placed_deviation: f64,
     /// The digits of the numbers in the file.
     precision: Precision,
+    /// A round shape whose resolution follows from the tolerance, and the way from its own frame to that of the parts.
+    exact: Option<(Shape, DAffine3)>,
     /// Low and high corner, in the observer's frame, of the box around all steps, where all steps share one mesh in a
     /// file as morph targets.
     pub(super) box_of_all_steps: Option<(DVec3, DVec3)>,
@@ -91,14 +94,14 @@ pub(super) struct Limits {
 }
 
 impl StepTolerance {
-    /// The tolerance of an object whose parts, as placed, are `seen` like this; its facets are taken for flat until
-    /// `deviation` is set.
+    /// The tolerance of an object whose parts are seen with these extremes; its facets are taken for flat until `deviation`
+    /// is set.
     pub(super) fn new(
         placed_object: &PlacedObject,
         view: View,
         (tolerance, measure): (Tolerance, Measure),
         precision: Precision,
-        seen: &[MappedMesh],
+        seen: &[Extremes],
     ) -> Self {
         let shaped = placed_object.shaped.as_ref();
         let aimed = tolerance.times(placed_object.loosening);
@@ -113,15 +116,49 @@ impl StepTolerance {
             placed_deviation: shaped.map_or(0.0, |shaped| shaped.deviation)
                 * view.elongation().max(1.0),
             precision,
+            exact: shaped
+                .filter(|shaped| shaped.shape.is_curved())
+                .map(|shaped| (shaped.shape.clone(), shaped.to_frame())),
             box_of_all_steps: None,
         }
     }
 
-    /// The observer's motion, where the tolerance limits the distance of surfaces.
+    /// What the measure asks of the triangles of a round shape.
+    pub(super) fn about(&self) -> About {
+        match self.measure {
+            Measure::Points => About::Points,
+            Measure::Surface => About::Surface,
+        }
+    }
+
+    /// The observer's motion, where the tolerance limits the distance of flat facets as surfaces.
     pub(super) fn motion(&self) -> Option<Motion> {
         let velocity = self.view.relative_velocity();
-        let is_of_surface = self.measure == Measure::Surface && velocity.rapidity() > 0.0;
+        let is_of_surface =
+            self.measure == Measure::Surface && self.exact.is_none() && velocity.rapidity() > 0.0;
         is_of_surface.then(|| Motion::new(velocity))
+    }
+
+    /// The fewest triangles by theory for the tolerance of the scene, with corners on the true surface of a round shape
+    /// whose resolution follows from the tolerance; `None` of any other object. `nearest` is the smallest seen distance.
+    pub(super) fn least_of_round(&self, nearest: f64) -> Option<f64> {
+        let (shape, to_frame) = self.exact.as_ref()?;
+        let to_offset = DAffine3::from_translation(-self.view.observer_rest()) * *to_frame;
+        let allowed = match (self.tolerance.unit(), self.tolerance.number()) {
+            (Unit::Degrees, degrees) => {
+                let sine = degrees.to_radians().sin();
+                let share = sine / (1.0 + sine);
+                let least = share * nearest.max(MIN_DISTANCE_UNTOUCHED * self.length / sine);
+                Allowed::Share {
+                    share,
+                    less: 0.0,
+                    least,
+                }
+            }
+            _ => Allowed::Length(self.length),
+        };
+        let sight = Sight::new(&self.view.relative_velocity(), to_offset, allowed);
+        Some(needed(shape, &sight, self.about()).least)
     }
 
     /// The limits of these parts, each of whose facets stands for `each` smaller ones.
@@ -140,12 +177,13 @@ impl StepTolerance {
         }
         let rounding = self.rounding_of_all(parts, seen);
         let left = self.aimed_length - curvature - rounding;
+        let extremes: Vec<Extremes> = seen.iter().map(|seen| seen.extremes).collect();
         Limits {
             curvature,
             rounding,
             left,
-            allowance: self.allowance(self.aimed, left, curvature, rounding, seen),
-            whole: self.allowance(self.tolerance, self.length, 0.0, 0.0, seen),
+            allowance: self.allowance(self.aimed, left, curvature, rounding, &extremes),
+            whole: self.allowance(self.tolerance, self.length, 0.0, 0.0, &extremes),
         }
     }
 
@@ -230,7 +268,8 @@ impl StepTolerance {
                     true => MIN_DISTANCE,
                     false => MIN_DISTANCE_UNTOUCHED,
                 };
-                let min_length = share * diagonal(seen) * degrees.to_radians().sin();
+                let extremes: Vec<Extremes> = seen.iter().map(|seen| seen.extremes).collect();
+                let min_length = share * diagonal(&extremes) * degrees.to_radians().sin();
                 let allowed = (0..count).into_par_iter().map(|index| {
                     let nearest = self.view.seen_distance(nearest(index));
                     // The facets that this leads to are other ones: a little room for their distances.
@@ -259,7 +298,7 @@ impl StepTolerance {
         left: f64,
         curvature: f64,
         rounding: f64,
-        seen: &[MappedMesh],
+        seen: &[Extremes],
     ) -> Allowance {
         let velocity = self.view.relative_velocity();
         let (gamma, gamma_beta) = (velocity.gamma(), velocity.gamma_beta());
@@ -290,12 +329,12 @@ impl StepTolerance {
 }
 
 /// A tolerance as a length in the observer's frame; an angle at the nearest vertex.
-fn length_of(tolerance: Tolerance, seen: &[MappedMesh]) -> f64 {
+fn length_of(tolerance: Tolerance, seen: &[Extremes]) -> f64 {
     match (tolerance.unit(), tolerance.number()) {
         (Unit::Absolute, length) => length,
         (Unit::Relative, fraction) => fraction * diagonal(seen),
         (Unit::Degrees, degrees) => {
-            let distances = seen.iter().map(|seen| seen.extremes.nearest);
+            let distances = seen.iter().map(|seen| seen.nearest);
             let nearest = distances.fold(f64::INFINITY, f64::min);
             degrees.to_radians().sin() * nearest.max(MIN_DISTANCE * diagonal(seen))
         }
@@ -304,13 +343,18 @@ fn length_of(tolerance: Tolerance, seen: &[MappedMesh]) -> f64 {
 
 /// Low and high corner of the box around meshes as seen, in the observer's frame.
 pub(super) fn bounds<'s>(seen: impl IntoIterator<Item = &'s MappedMesh>) -> Option<(DVec3, DVec3)> {
-    let boxes = seen.into_iter().filter_map(|seen| seen.extremes.bounds());
+    box_of(seen.into_iter().map(|seen| &seen.extremes))
+}
+
+/// Low and high corner of the box around all that is seen with these extremes, in the observer's frame.
+fn box_of<'s>(seen: impl IntoIterator<Item = &'s Extremes>) -> Option<(DVec3, DVec3)> {
+    let boxes = seen.into_iter().filter_map(Extremes::bounds);
     boxes.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
 }
 
 /// The length of the diagonal of that box.
-fn diagonal(seen: &[MappedMesh]) -> f64 {
-    bounds(seen).map_or(0.0, |(low, high)| length(high - low))
+fn diagonal(seen: &[Extremes]) -> f64 {
+    box_of(seen).map_or(0.0, |(low, high)| length(high - low))
 }
 
 /// One of `parts` equal triangles that a triangle is made of, in its middle.

@@ -1,5 +1,6 @@
 //! The pipeline: it makes the photosurface of every part at every step from a scene and its models.
 
+mod batches;
 mod blurred;
 mod bounds;
 mod budget;
@@ -17,8 +18,11 @@ mod names;
 mod photosurface;
 mod placed_object;
 mod placed_scene;
+mod placing;
 mod plan;
 mod predicting;
+mod sampler;
+mod seen_places;
 mod side_by_side;
 mod surface_options;
 mod together;

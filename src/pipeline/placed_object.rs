@@ -5,7 +5,8 @@ use std::borrow::Cow;
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
-use crate::light_cone::{ModelView, View};
+use super::sampler::Sampler;
+use crate::light_cone::{Extremes, ModelView, View};
 use crate::material::Part;
 use crate::mesh::Mesh;
 use crate::scene::{Object, Source};
@@ -36,8 +37,14 @@ pub(super) struct PlacedObject {
 /// A shape, which can be made as fine as its tolerance asks for.
 #[derive(Clone, Debug)]
 pub(super) struct Shaped {
+    /// The shape as the scene has it.
     pub(super) shape: Shape,
-    pub(super) model_to_rest: DAffine3,
+    /// The form of the shape that the parts as placed have: the coarsest one if the shape is flat and has no resolution
+    /// of its own, otherwise the shape as the scene has it.
+    pub(super) placed: Shape,
+    model_to_rest: DAffine3,
+    /// From the rest frame to that of a stand-in, if the parts are those of one.
+    rest_to_stand_in: Option<DAffine3>,
     pub(super) largest_scale: f64,
     /// Bound on the distance between the facets of the placed parts and the curved surface, in the rest frame.
     pub(super) deviation: f64,
@@ -80,14 +87,22 @@ impl PlacedObject {
         let Some(to_stand_in) = shown.rest_to_stand_in() else {
             return (Cow::Borrowed(self), shown.of_stand_in(0.0));
         };
+        // Deviations stay those at rest: the stretch of facets counts the elongation.
+        let shaped = self.shaped.as_ref().map(|shaped| Shaped {
+            rest_to_stand_in: Some(to_stand_in),
+            ..shaped.clone()
+        });
+        let parts = match &shaped {
+            Some(shaped) if shaped.is_sampled() => shaped.parts_like(&shaped.placed, &self.parts),
+            _ => stretched(&self.parts, &to_stand_in),
+        };
         let stand_in = Self {
-            parts: stretched(&self.parts, &to_stand_in),
-            // Deviations stay those at rest: the stretch of facets counts the elongation.
-            shaped: self.shaped.as_ref().map(|shaped| Shaped {
-                model_to_rest: to_stand_in * shaped.model_to_rest,
-                ..shaped.clone()
-            }),
-            ..self.clone()
+            parts,
+            shaped,
+            loosening: self.loosening,
+            source_triangles: self.source_triangles,
+            beside: self.beside,
+            granted: self.granted.clone(),
         };
         let reach = self.reach(shown.view().observer_rest());
         (Cow::Owned(stand_in), shown.of_stand_in(reach))
@@ -137,8 +152,10 @@ impl Shaped {
     pub(super) fn of(object: &Object) -> Option<Self> {
         match &object.source {
             Source::Shape(shape, _) => Some(Self {
+                placed: shape.coarsest_flat().unwrap_or_else(|| shape.clone()),
                 shape: shape.clone(),
                 model_to_rest: object.model_to_rest(),
+                rest_to_stand_in: None,
                 largest_scale: object.scale.largest(),
                 deviation: shape.deviation() * object.scale.largest(),
             }),
@@ -146,15 +163,33 @@ impl Shaped {
         }
     }
 
-    /// Number of triangles of the shape's coarsest form; `parts` are the parts of any form.
+    /// Whether the parts as placed are coarser than the shape as the scene has it, so that places between their corners
+    /// tell how large the photosurface is.
+    pub(super) fn is_sampled(&self) -> bool {
+        self.placed != self.shape
+    }
+
+    /// The extremes, as seen, of places all over a shape with flat faces: the vertices of its default resolution.
+    pub(super) fn extremes(&self, view: &View) -> Extremes {
+        let mut sampler = Sampler::new(view);
+        let to_stand_in = self.rest_to_stand_in.unwrap_or(DAffine3::IDENTITY);
+        match self.model_to_rest == DAffine3::IDENTITY && to_stand_in == DAffine3::IDENTITY {
+            true => self.shape.places_on_faces(|place| sampler.add(place)),
+            false => self.shape.places_on_faces(|place| {
+                let place = self.model_to_rest.transform_point3(place);
+                sampler.add(to_stand_in.transform_point3(place));
+            }),
+        }
+        sampler.found()
+    }
+
+    /// Number of triangles of the shape's coarsest form; `parts` are the parts as placed.
     pub(super) fn min_triangles(&self, parts: &[(String, Part)]) -> u64 {
         let coarsest = self.shape.within(f64::INFINITY);
-        if coarsest == self.shape {
+        if coarsest == self.placed {
             triangle_count(parts)
-        } else if coarsest.deviation() > 0.0 {
-            coarsest.triangle_count()
         } else {
-            triangle_count(&self.parts_like(&coarsest, parts))
+            coarsest.triangle_count()
         }
     }
 
@@ -172,6 +207,14 @@ impl Shaped {
         shape
     }
 
+    /// From the shape's own frame to that of the parts.
+    pub(super) fn to_frame(&self) -> DAffine3 {
+        match &self.rest_to_stand_in {
+            Some(to_stand_in) => *to_stand_in * self.model_to_rest,
+            None => self.model_to_rest,
+        }
+    }
+
     /// The parts of the same shape with another resolution; names and materials are those of `parts`.
     pub(super) fn parts_like(
         &self,
@@ -179,10 +222,11 @@ impl Shaped {
         parts: &[(String, Part)],
     ) -> Vec<(String, Part)> {
         let mesh = shape.mesh().expect("coarser than what a shape may have");
+        let to_frame = self.to_frame();
         let made = parts.iter().map(|(name, part)| {
             let made = Part::new("", mesh.clone(), part.material.clone());
             let made = made.expect("a material that fitted the same shape");
-            (name.clone(), made.transformed(&self.model_to_rest))
+            (name.clone(), made.transformed(&to_frame))
         });
         made.collect()
     }

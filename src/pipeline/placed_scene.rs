@@ -3,13 +3,16 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use rayon::prelude::*;
 use serde_json::Value;
 
 use super::Bounds;
+use super::batches::Batches;
 use super::facts::{Facts, SceneFacts};
 use super::making::{Surface, make};
 use super::names::{self, UniqueNames, step_label};
-use super::placed_object::{PlacedObject, Shaped, triangle_count};
+use super::placed_object::PlacedObject;
+use super::placing::Placing;
 use super::plan::{Plan, Unrefined};
 use super::vertex_data::VertexData;
 use super::{MomentFacts, Photosurface, PlacedSceneError, SurfaceOptions};
@@ -104,27 +107,10 @@ impl PlacedScene {
             .marker
             .map(|radius| marker(&names.unique(MARKER_NAME), radius));
         let origins = models.iter().map(|model| model.origin.clone()).collect();
-        let mut objects = Vec::with_capacity(models.len());
-        for (object, model) in scene.objects().iter().zip(models) {
-            let count = model.parts.len();
-            let parts = model.parts.into_iter().map(|part| {
-                let name = names.unique(&wanted_name(object, &part, count));
-                (name, part.transformed(&object.model_to_rest()))
-            });
-            let parts: Vec<(String, Part)> = parts.collect();
-            let shaped = Shaped::of(object);
-            objects.push(PlacedObject {
-                source_triangles: match &shaped {
-                    Some(shaped) => shaped.min_triangles(&parts),
-                    None => triangle_count(&parts),
-                },
-                parts,
-                shaped,
-                loosening: 1.0,
-                beside: DVec3::ZERO,
-                granted: None,
-            });
-        }
+        let mut placing = Placing::new(names);
+        let models = scene.objects().iter().zip(models);
+        let objects = models.map(|(object, model)| placing.placed(object, model));
+        let objects = objects.collect();
         let placed = Self {
             scene,
             marker,
@@ -250,20 +236,51 @@ impl PlacedScene {
         step: usize,
         wanted: SurfaceOptions,
     ) -> Result<impl Iterator<Item = Photosurface>, PlacedSceneError> {
-        let steps = self.scene.steps().len();
-        if step >= steps {
-            return Err(PlacedSceneError::Step { step, steps });
-        }
-        let objects = self.scene.objects().iter().zip(&self.objects);
-        let made = objects.flat_map(move |(object, placed_object)| {
-            let plan = self.plan(object, placed_object, step, wanted);
-            let (shown, beside) = (plan.shown, placed_object.beside);
-            let surfaces = make(plan, wanted);
-            surfaces.into_iter().map(move |surface| {
-                self.photosurface(object, (step, beside), &shown, surface, wanted)
+        self.check_step(step)?;
+        let mut batches = Batches::of(self.objects.len());
+        let next_batch = move || {
+            let batch = batches.next()?;
+            let made: Vec<Made<'_>> = match batch.len() {
+                1 => vec![self.made(batch.start, step, wanted)],
+                _ => {
+                    let objects = batch.into_par_iter();
+                    objects
+                        .map(|object| self.made(object, step, wanted))
+                        .collect()
+                }
+            };
+            batches.made(made.iter().map(Made::triangles).max().unwrap_or(0));
+            Some(made)
+        };
+        let made = std::iter::from_fn(next_batch).flatten();
+        Ok(made.flat_map(move |made| {
+            let object = &self.scene.objects()[made.object];
+            let beside = self.objects[made.object].beside;
+            let surfaces = made.surfaces.into_iter();
+            surfaces.map(move |surface| {
+                self.photosurface(object, (step, beside), &made.shown, surface, wanted)
             })
-        });
-        Ok(made)
+        }))
+    }
+
+    /// Makes the surfaces of one object, by its number, at one step.
+    fn made(&self, number: usize, step: usize, wanted: SurfaceOptions) -> Made<'_> {
+        let (object, placed_object) = (&self.scene.objects()[number], &self.objects[number]);
+        let plan = self.plan(object, placed_object, step, wanted);
+        Made {
+            object: number,
+            shown: plan.shown,
+            surfaces: make(plan, wanted),
+        }
+    }
+
+    /// Whether the scene has a step.
+    pub(super) fn check_step(&self, step: usize) -> Result<(), PlacedSceneError> {
+        let steps = self.scene.steps().len();
+        match step < steps {
+            true => Ok(()),
+            false => Err(PlacedSceneError::Step { step, steps }),
+        }
     }
 
     /// The state before refinement at one step, for each object.
@@ -305,13 +322,13 @@ impl PlacedScene {
 
     /// Which distance the tolerance of an object with these parts limits: what the scene says, else that of points if a
     /// part has a texture or colours, if vertices get attributes, or if effects colour them, and else that of surfaces.
-    /// Round shapes and tolerances that are angles have the measure of points, whose bound holds for surfaces as well.
+    /// For flat facets, tolerances that are angles limit the distance of points, whose bound holds for surfaces as well.
     pub fn measure(&self, object: &Object, parts: &[(String, Part)]) -> Measure {
         let is_round = match &object.source {
-            Source::Shape(shape, _) => shape.deviation() > 0.0,
+            Source::Shape(shape, _) => shape.is_curved(),
             Source::File(_) | Source::Model(_) => false,
         };
-        if is_round || self.scene.tolerance(object).unit() == Unit::Degrees {
+        if !is_round && self.scene.tolerance(object).unit() == Unit::Degrees {
             return Measure::Points;
         }
         let has_points = |part: &Part| {
@@ -398,6 +415,21 @@ impl PlacedScene {
     }
 }
 
+/// The surfaces of one object at one step.
+struct Made<'a> {
+    /// Its number in the scene.
+    object: usize,
+    shown: ModelView,
+    surfaces: Vec<Surface<'a>>,
+}
+
+impl Made<'_> {
+    fn triangles(&self) -> usize {
+        let meshes = self.surfaces.iter().map(|surface| &surface.seen.mesh);
+        meshes.map(|mesh| mesh.triangle_count()).sum()
+    }
+}
+
 /// Checks that a composed velocity does not exceed [`MAX_RAPIDITY`]. The relative velocity of two velocities with this
 /// rapidity is still within `f64`.
 fn check_rapidity(who: &str, velocity: Velocity) -> Result<(), PlacedSceneError> {
@@ -417,9 +449,11 @@ fn is_of_its_shape(object: &Object, model: &Model) -> bool {
         return true;
     };
     if let [part] = &model.parts[..]
-        && part.mesh().maker() == Some(shape)
+        && let Some(maker) = part.mesh().maker()
+        && (maker == shape || Some(maker) == shape.coarsest_flat().as_ref())
     {
-        return true;
+        // Without refinement the shape gets its default resolution.
+        return shape.check_flat_size().is_ok();
     }
     let Ok(made) = shape.model(appearance) else {
         return false;
@@ -432,7 +466,7 @@ fn is_of_its_shape(object: &Object, model: &Model) -> bool {
 }
 
 /// The wanted name of a part; `parts` is the number of parts of its object.
-fn wanted_name(object: &Object, part: &Part, parts: usize) -> String {
+pub(super) fn wanted_name(object: &Object, part: &Part, parts: usize) -> String {
     match parts {
         1 => object.name.clone(),
         _ => format!("{}_{}", object.name, part.name),

@@ -7,10 +7,10 @@ use rayon::prelude::*;
 use super::SurfaceOptions;
 use super::limits::{Limits, StepTolerance};
 use super::mapped_mesh::MappedMesh;
-use super::placed_object::PlacedObject;
+use super::placed_object::{PlacedObject, Shaped};
 use crate::light_cone::{ModelView, View};
 use crate::material::Part;
-use crate::scene::{Measure, Tolerance};
+use crate::scene::{Measure, Tolerance, Unit};
 use crate::shape::Shape;
 use crate::tessellate::Allowance;
 
@@ -60,8 +60,15 @@ impl<'a> Plan<'a> {
     ) -> Self {
         let (placed_object, view) = placed_object.stand_in(&shown);
         let seen = seen_parts(&view, &placed_object.parts);
+        // An absolute tolerance does not depend on how large the object is seen.
+        let is_sampled = tolerance.0.unit() != Unit::Absolute
+            && (placed_object.shaped.as_ref()).is_some_and(Shaped::is_sampled);
+        let extremes = match &placed_object.shaped {
+            Some(shaped) if is_sampled => vec![shaped.extremes(&view)],
+            _ => seen.iter().map(|seen| seen.extremes).collect(),
+        };
         let tolerance =
-            StepTolerance::new(&placed_object, view, tolerance, wanted.precision, &seen);
+            StepTolerance::new(&placed_object, view, tolerance, wanted.precision, &extremes);
         let mut plan = Self {
             placed_object,
             shown,
@@ -82,7 +89,7 @@ impl<'a> Plan<'a> {
                 false => shaped.shape.clone(),
             };
             plan.tolerance.deviation = shape.deviation() * shaped.largest_scale;
-            plan.shape = Some(shape).filter(|shape| *shape != shaped.shape);
+            plan.shape = Some(shape).filter(|shape| *shape != shaped.placed);
         }
         plan
     }

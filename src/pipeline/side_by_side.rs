@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{PlacedScene, PlacedSceneError, SurfaceOptions};
+use super::{PlacedScene, PlacedSceneError};
 use crate::material::Model;
 use crate::scene::Scene;
 use crate::spacetime::ViewModel;
@@ -56,17 +56,12 @@ impl PlacedScene {
 
     /// Low and high corner of the box around each group at all steps, in the observer's frame.
     fn boxes_of_groups(&self, groups: usize) -> Result<Vec<(DVec3, DVec3)>, PlacedSceneError> {
-        let options = SurfaceOptions {
-            subdivide: false,
-            ..SurfaceOptions::default()
-        };
-        let in_each: usize = self.objects().map(|(_, parts)| parts.len()).sum();
-        let in_each = (in_each / groups.max(1)).max(1);
+        let in_each = (self.objects.len() / groups.max(1)).max(1);
         let nowhere = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let mut boxes = vec![nowhere; groups];
         for step in 0..self.scene().steps().len() {
-            for (number, surface) in self.photosurfaces(step, options)?.enumerate() {
-                let (low, high) = surface.mesh.bounds().unwrap_or(nowhere);
+            for (number, extremes) in self.seen_extremes(step)?.iter().enumerate() {
+                let (low, high) = extremes.bounds().unwrap_or(nowhere);
                 let group = &mut boxes[number / in_each];
                 *group = (group.0.min(low), group.1.max(high));
             }
@@ -77,6 +72,7 @@ impl PlacedScene {
 
 #[cfg(test)]
 mod tests {
+    use super::super::SurfaceOptions;
     use super::*;
     use crate::jobs::load_models;
 

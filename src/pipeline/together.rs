@@ -30,10 +30,6 @@ pub(super) fn make_together<'a>(
     mut plans: Vec<Plan<'a>>,
     wanted: SurfaceOptions,
 ) -> Vec<Vec<Surface<'a>>> {
-    for plan in &mut plans {
-        // A mesh that is refined for several steps has no facets that a bound for surfaces could start from.
-        plan.tolerance.measure = Measure::Points;
-    }
     share_finest_shape(&mut plans);
     let Some(first) = plans.first() else {
         return vec![];
@@ -179,6 +175,8 @@ fn at_all_steps(plans: &mut [Plan<'_>], parts: &[(String, Part)]) -> Vec<AtStep>
     let steps = plans.iter_mut().zip(shown);
     let steps = steps.map(|(plan, (stand_ins, seen))| {
         plan.tolerance.box_of_all_steps = box_of_all_steps;
+        // A mesh that is refined for several steps has no facets that a bound for surfaces could start from.
+        plan.tolerance.measure = Measure::Points;
         AtStep {
             limits: plan.tolerance.limits(&stand_ins, &seen, 1.0),
             stand_ins,

@@ -37,7 +37,7 @@ pub use camera::{Camera, CameraError, MAX_PICTURE_SIDE, PictureSize, Projection}
 pub(crate) use lettering::FONT;
 pub use lettering::lettering_width;
 pub(crate) use paint::Paint;
-pub use picture::Picture;
+pub use picture::{Picture, PngError};
 pub use picture_effects::PictureEffects;
 pub(crate) use scenery::grid_places;
 pub use scenery::{PictureOptions, Scenery};

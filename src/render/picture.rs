@@ -5,10 +5,23 @@ use std::io::Write;
 use glam::Vec3;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
+use thiserror::Error;
 
-use super::PictureSize;
+use super::{CameraError, PictureSize};
 use crate::effects::byte_of_linear;
 use crate::shape::Color;
+
+/// Reasons why bytes are not a picture.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum PngError {
+    /// They are not a PNG.
+    #[error("is no PNG that can be read")]
+    Image(#[from] image::ImageError),
+    /// The picture is too large.
+    #[error(transparent)]
+    Size(#[from] CameraError),
+}
 
 /// Red, green and blue in sRGB, one byte each, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -71,6 +84,18 @@ impl Picture {
     /// All pixels, row by row from the top.
     pub(super) fn pixels_mut(&mut self) -> impl Iterator<Item = &mut [u8; 3]> {
         self.bytes.as_chunks_mut().0.iter_mut()
+    }
+
+    /// Reads a picture from the bytes of a PNG; transparency is left out.
+    ///
+    /// # Errors
+    ///
+    /// The bytes are not a PNG, or it has more pixels in a row or a column than pictures may have.
+    pub fn from_png(png: &[u8]) -> Result<Self, PngError> {
+        let image = image::load_from_memory_with_format(png, image::ImageFormat::Png)?;
+        let image = image.into_rgb8();
+        let size = PictureSize::new(image.width(), image.height())?;
+        Ok(Self::new(size, image.into_raw()))
     }
 
     /// Writes the picture as PNG.

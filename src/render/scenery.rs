@@ -21,7 +21,7 @@ use super::{Camera, PictureEffects, Strokes, Textures, Viewpoint};
 use crate::material::{Material, Part};
 use crate::mesh::Mesh;
 use crate::scene::{Effects, Emission, Object, Scene, Source};
-use crate::shape::{Appearance, Color, Shape};
+use crate::shape::{Color, Shape};
 use crate::spacetime::{Moment, Velocity, VelocityKey};
 
 /// How far facets of a round shape are from it, as a part of its size: less than a tenth of a pixel where it fills
@@ -169,9 +169,12 @@ impl Scenery {
             Source::Shape(Shape::Sphere(sphere), _) => {
                 Geometry::Ball(Ball::new(sphere.clone(), object.model_to_rest()))
             }
-            Source::Shape(shape, appearance) => match shape.bands() {
+            Source::Shape(shape, _) => match shape.bands() {
                 Some(bands) => Geometry::Turned(Turned::new(bands, object.model_to_rest())),
-                None => Geometry::Mesh(Caster::new(fine_mesh(object, shape, appearance, part))),
+                None if shape.deviation() == 0.0 => {
+                    Geometry::Mesh(Caster::new(part.mesh().clone()))
+                }
+                None => Geometry::Mesh(Caster::new(fine_mesh(object, shape, part))),
             },
             _ => Geometry::Mesh(Caster::new(part.mesh().clone())),
         };
@@ -411,7 +414,7 @@ pub(crate) fn grid_places(samples: u32) -> impl Iterator<Item = DVec2> {
 }
 
 /// The mesh of a part that a shape is, fine enough for pictures.
-fn fine_mesh(object: &Object, shape: &Shape, appearance: &Appearance, part: &Part) -> Mesh {
+fn fine_mesh(object: &Object, shape: &Shape, part: &Part) -> Mesh {
     let size = part
         .mesh()
         .bounds()
@@ -419,10 +422,9 @@ fn fine_mesh(object: &Object, shape: &Shape, appearance: &Appearance, part: &Par
     // Of a part without an extent nothing says how fine it has to be.
     let has_extent = size > 0.0 && size.is_finite();
     let fine = has_extent.then(|| shape.within(FACETS * size / object.scale.largest()));
-    let made = fine.and_then(|fine| fine.model(appearance).ok());
-    let made = made.and_then(|mut model| model.parts.pop());
-    let made = made.map(|part| part.transformed(&object.model_to_rest()));
-    made.as_ref().unwrap_or(part).mesh().clone()
+    let made = fine.and_then(|fine| fine.mesh().ok());
+    let made = made.map(|mesh| mesh.transformed(&object.model_to_rest()));
+    made.unwrap_or_else(|| part.mesh().clone())
 }
 
 #[cfg(test)]

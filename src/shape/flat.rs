@@ -13,7 +13,7 @@ use super::{Count, Length, ShapeError};
 pub struct Cuboid {
     /// Lengths along x, y and z, in the object's units before `scale`.
     pub size: [Length; 3],
-    /// Number of segments along each edge; 32 if absent.
+    /// Number of segments along each edge. If absent, refinement starts from one; without refinement there are 32.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub resolution: Option<Count<1, 32>>,
 }
@@ -23,14 +23,35 @@ impl Cuboid {
     pub(super) const CHECKER_CELLS: [u32; 2] = [8, 8];
 
     pub(super) fn surface(&self) -> Result<Surface, ShapeError> {
-        let segments = u64::from(self.resolution.unwrap_or_default().get());
-        let mut surface = Surface::with_room_for(12 * segments * segments)?;
-        let size = DVec3::from_array(self.size.map(Length::get));
-        for side in Side::ALL {
-            let centre = 0.5 * side.outward();
-            add_square(&mut surface, side, segments, size, centre, 1.0);
+        let mut surface = Surface::with_room_for(self.triangle_count())?;
+        for square in self.squares() {
+            square.add_to(&mut surface, 1.0);
         }
         Ok(surface)
+    }
+
+    /// Tells the places of the vertices.
+    pub(super) fn places(&self, mut tell: impl FnMut(DVec3)) {
+        self.squares().for_each(|square| square.places(&mut tell));
+    }
+
+    pub(super) fn vertex_count(&self) -> usize {
+        self.squares().map(|square| square.vertex_count()).sum()
+    }
+
+    pub(super) fn triangle_count(&self) -> u64 {
+        self.squares().map(|square| square.triangle_count()).sum()
+    }
+
+    fn squares(&self) -> impl Iterator<Item = Square> {
+        let segments = self.resolution.unwrap_or_default().get();
+        let size = DVec3::from_array(self.size.map(Length::get));
+        Side::ALL.into_iter().map(move |side| Square {
+            side,
+            segments,
+            size,
+            centre: 0.5 * side.outward(),
+        })
     }
 }
 
@@ -42,7 +63,7 @@ pub struct Grid {
     pub size: Length,
     /// Number of checker cells along each edge.
     pub cells: Count<1, 1>,
-    /// Number of segments along the edge of a cell; 8 if absent.
+    /// Number of segments along the edge of a cell. If absent, refinement starts from one; without refinement there are 8.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub resolution: Option<Count<1, 8>>,
 }
@@ -52,52 +73,91 @@ impl Grid {
     pub(super) const CHECKER_CELLS: [u32; 2] = [2, 2];
 
     pub(super) fn surface(&self) -> Result<Surface, ShapeError> {
-        let cells = u64::from(self.cells.get());
-        let segments = cells * u64::from(self.resolution.unwrap_or_default().get());
-        let mut surface = Surface::with_room_for(2 * segments * segments)?;
-        let size = DVec3::splat(self.size.get());
-        let repeats = cells as f64 / 2.0;
-        add_square(
-            &mut surface,
-            Side::TOP,
-            segments,
-            size,
-            DVec3::ZERO,
-            repeats,
-        );
+        let mut surface = Surface::with_room_for(self.triangle_count())?;
+        let repeats = f64::from(self.cells.get()) / 2.0;
+        self.square().add_to(&mut surface, repeats);
         Ok(surface)
+    }
+
+    /// Tells the places of the vertices.
+    pub(super) fn places(&self, tell: impl FnMut(DVec3)) {
+        self.square().places(tell);
+    }
+
+    pub(super) fn vertex_count(&self) -> usize {
+        self.square().vertex_count()
+    }
+
+    pub(super) fn triangle_count(&self) -> u64 {
+        self.square().triangle_count()
+    }
+
+    fn square(&self) -> Square {
+        Square {
+            side: Side::TOP,
+            segments: self.cells.get() * self.resolution.unwrap_or_default().get(),
+            size: DVec3::splat(self.size.get()),
+            centre: DVec3::ZERO,
+        }
     }
 }
 
-/// Adds a unit square about `centre` on a side of the unit cube, stretched by `size`, in
-/// `segments` squared pieces, on which a picture repeats `repeats` times each way.
-fn add_square(
-    surface: &mut Surface,
+/// A unit square about `centre` on a side of the unit cube, stretched by `size`, in `segments` squared pieces.
+struct Square {
     side: Side,
-    segments: u64,
+    segments: u32,
     size: DVec3,
     centre: DVec3,
-    repeats: f64,
-) {
-    // From -1/2 to 1/2; mirror images are exact, so that two sides agree on their common edge.
-    let place = |i: u64| (2 * i as i64 - segments as i64) as f64 / (2 * segments) as f64;
-    let row = segments as u32 + 1;
-    let mut first = 0;
-    for j in 0..=segments {
-        for i in 0..=segments {
-            let position = (centre + side.right * place(i) + side.up * place(j)) * size;
-            let texture = DVec2::new(i as f64, (segments - j) as f64) / segments as f64;
-            let index = surface.vertex(position, side.outward(), repeats * texture);
-            if i == 0 && j == 0 {
-                first = index;
+}
+
+impl Square {
+    /// The vertex in column `i` and row `j`.
+    fn place(&self, i: u32, j: u32) -> DVec3 {
+        let segments = i64::from(self.segments);
+        // From -1/2 to 1/2; mirror images are exact, so that two sides agree on their common edge.
+        let place = |i: u32| (2 * i64::from(i) - segments) as f64 / (2 * segments) as f64;
+        (self.centre + self.side.right * place(i) + self.side.up * place(j)) * self.size
+    }
+
+    fn vertex_count(&self) -> usize {
+        let row = self.segments as usize + 1;
+        row * row
+    }
+
+    fn triangle_count(&self) -> u64 {
+        2 * u64::from(self.segments) * u64::from(self.segments)
+    }
+
+    fn places(&self, mut tell: impl FnMut(DVec3)) {
+        for j in 0..=self.segments {
+            for i in 0..=self.segments {
+                // As in a `Surface`.
+                tell(self.place(i, j) + DVec3::ZERO);
             }
         }
     }
-    for j in 0..segments as u32 {
-        for i in 0..segments as u32 {
-            let corner = first + j * row + i;
-            surface.triangle([corner, corner + 1, corner + row + 1]);
-            surface.triangle([corner, corner + row + 1, corner + row]);
+
+    /// Adds it to a surface; a picture repeats `repeats` times each way on it.
+    fn add_to(&self, surface: &mut Surface, repeats: f64) {
+        let (side, segments) = (self.side, self.segments);
+        let row = segments + 1;
+        let mut first = 0;
+        for j in 0..=segments {
+            for i in 0..=segments {
+                let texture =
+                    DVec2::new(f64::from(i), f64::from(segments - j)) / f64::from(segments);
+                let index = surface.vertex(self.place(i, j), side.outward(), repeats * texture);
+                if i == 0 && j == 0 {
+                    first = index;
+                }
+            }
+        }
+        for j in 0..segments {
+            for i in 0..segments {
+                let corner = first + j * row + i;
+                surface.triangle([corner, corner + 1, corner + row + 1]);
+                surface.triangle([corner, corner + row + 1, corner + row]);
+            }
         }
     }
 }

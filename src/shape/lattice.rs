@@ -33,7 +33,8 @@ struct LatticeFields {
     spacing: Length,
     /// Width of a bar, less than `spacing`, in the object's units before `scale`.
     thickness: Length,
-    /// Number of segments along a bar from crossing to crossing; 4 if absent.
+    /// Number of segments along a bar from crossing to crossing. If absent, refinement starts from one; without refinement
+    /// there are 4.
     resolution: Option<Count<1, 4>>,
 }
 
@@ -128,14 +129,50 @@ impl Lattice {
         Ok(lattice.surface)
     }
 
-    /// Two triangles for each of four sides of each segment, and for each of six of each crossing but
-    /// for those where the two ends of a bar are attached.
-    fn triangle_count(&self) -> u64 {
+    fn crossings_and_bars(&self) -> [u64; 2] {
         let [x, y, z] = self.cells.get().map(u64::from);
         let crossings = (x + 1) * (y + 1) * (z + 1);
         let bars = x * (y + 1) * (z + 1) + y * (x + 1) * (z + 1) + z * (x + 1) * (y + 1);
+        [crossings, bars]
+    }
+
+    /// Tells the places of the vertices: they are the corners of slots that are filled.
+    pub(super) fn places(&self, mut tell: impl FnMut(DVec3)) {
+        let period = self.resolution.unwrap_or_default().get() as usize + 1;
+        let axes = self.cells.get().map(|cells| self.places_along(cells));
+        // Whether a place along an axis is on the way from one crossing to the next.
+        let is_between = |place: usize| place % period > 1;
+        for (i, &x) in axes[0].iter().enumerate() {
+            for (j, &y) in axes[1].iter().enumerate() {
+                let between = usize::from(is_between(i)) + usize::from(is_between(j));
+                if between > 1 {
+                    continue;
+                }
+                for (k, &z) in axes[2].iter().enumerate() {
+                    if between == 0 || !is_between(k) {
+                        // As in a `Surface`.
+                        tell(DVec3::new(x, y, z) + DVec3::ZERO);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Two triangles for each of four sides of each segment, and for each of six of each crossing but
+    /// for those where the two ends of a bar are attached.
+    pub(super) fn triangle_count(&self) -> u64 {
+        let [crossings, bars] = self.crossings_and_bars();
         2 * (4 * u64::from(self.resolution.unwrap_or_default().get()) * bars + 6 * crossings
             - 2 * bars)
+    }
+
+    /// The number of vertices: four on each of the six sides of a crossing, but for those of the outermost bars where the
+    /// next bar begins and no other bar is attached; and two on each of the four sides of a bar between two segments.
+    pub(super) fn vertex_count(&self) -> usize {
+        let [crossings, bars] = self.crossings_and_bars();
+        let cells = self.cells.get().into_iter().map(u64::from).sum::<u64>();
+        let between = u64::from(self.resolution.unwrap_or_default().get()) - 1;
+        (24 * crossings + 8 * bars * between - 8 * cells) as usize
     }
 
     /// The places along one axis where crossings and segments begin and end, in ascending order.

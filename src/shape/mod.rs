@@ -7,9 +7,18 @@
 mod appearance;
 mod band;
 mod checker;
+#[cfg_attr(
+    not(test),
+    allow(
+        dead_code,
+        reason = "exports use of it the fewest triangles by theory so far"
+    )
+)]
+mod curved;
 mod deviation;
 mod error;
 mod flat;
+mod flat_form;
 mod lathe;
 mod lattice;
 mod round;
@@ -22,6 +31,7 @@ mod witness;
 
 pub use appearance::{Appearance, Color};
 pub(crate) use band::Band;
+pub(crate) use curved::{Body, Jet, LEAST_PARTS, MAX_SPAN, Piece, Spot, axes_of_turn};
 pub use error::ShapeError;
 pub use flat::{Cuboid, Grid};
 pub use lattice::Lattice;

@@ -29,7 +29,7 @@ pub struct Cylinder {
 
 impl Cylinder {
     /// Checker cells around the side, 15 degrees each; 8 across a lid are about as large.
-    const COLUMNS: u32 = 24;
+    pub(super) const COLUMNS: u32 = 24;
 
     pub(super) fn surface(&self) -> Result<Surface, ShapeError> {
         revolve(&self.profile())
@@ -110,7 +110,7 @@ pub struct Cone {
 
 impl Cone {
     /// Checker cells around the side, 15 degrees each; 8 across the lid are about as large.
-    const COLUMNS: u32 = 24;
+    pub(super) const COLUMNS: u32 = 24;
 
     /// The fewest segments near the tip, where they can be few because they are small.
     const MIN_SEGMENTS: u64 = 8;
@@ -259,7 +259,7 @@ impl Torus {
 }
 
 /// How many rows of checker cells along `length` are about as high as one of `columns` is wide.
-fn checker_rows(length: f64, radius: f64, columns: u32) -> f64 {
+pub(super) fn checker_rows(length: f64, radius: f64, columns: u32) -> f64 {
     (length * f64::from(columns) / (TAU * radius))
         .round()
         .max(1.0)

@@ -9,7 +9,7 @@ use super::{
     Appearance, Cells, Cone, Count, Cuboid, Cylinder, Grid, Lattice, Length, Rod, ShapeError,
     Sphere, Torus, checker, round,
 };
-use crate::material::{Model, Part};
+use crate::material::{Material, Model, Part};
 use crate::mesh::Mesh;
 
 /// A shape that the program makes itself, centred on the origin of its object.
@@ -222,12 +222,16 @@ impl Shape {
     ///
     /// More than 20 million triangles, or lengths too different for `f64`.
     pub fn model(&self, appearance: &Appearance) -> Result<Model, ShapeError> {
-        let material = checker::material(appearance, self.checker_cells());
-        let part = Part::new("", self.mesh()?, Some(Arc::new(material)))?;
+        let part = Part::new("", self.mesh()?, Some(Arc::new(self.material(appearance))))?;
         Ok(Model {
             parts: vec![part],
             origin: None,
         })
+    }
+
+    /// The material of [`Shape::model`] alone.
+    pub(crate) fn material(&self, appearance: &Appearance) -> Material {
+        checker::material(appearance, self.checker_cells())
     }
 
     /// The mesh of [`Shape::model`] alone.
@@ -251,7 +255,7 @@ impl Shape {
     }
 
     /// Columns and rows of the checker.
-    fn checker_cells(&self) -> [u32; 2] {
+    pub(crate) fn checker_cells(&self) -> [u32; 2] {
         match self {
             Self::Sphere(_) => Sphere::CHECKER_CELLS,
             Self::Cuboid(_) => Cuboid::CHECKER_CELLS,

@@ -45,7 +45,7 @@ impl Sphere {
 
     /// The texture coordinates of the sphere's point in `direction`, of any length.
     pub(crate) fn texture_at(&self, direction: DVec3) -> DVec2 {
-        DVec2::new(turn(direction), from_north(direction))
+        texture_toward(direction)
     }
 
     pub(super) fn triangle_count(&self) -> u64 {
@@ -128,6 +128,11 @@ fn unwrapped_turns(normals: [DVec3; 3]) -> [f64; 3] {
         turns[pole] = (turns[(pole + 1) % 3] + turns[(pole + 2) % 3]) / 2.0;
     }
     turns
+}
+
+/// Longitude in turns, and the part of half a turn from the north pole, of a direction of any length.
+pub(super) fn texture_toward(direction: DVec3) -> DVec2 {
+    DVec2::new(turn(direction), from_north(direction))
 }
 
 /// The part of half a turn that a direction is away from north.

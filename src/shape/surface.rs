@@ -28,12 +28,7 @@ impl Surface {
     ///
     /// More than [`MAX_TRIANGLES`], so that it is refused before any work.
     pub(super) fn with_room_for(triangles: u64) -> Result<Self, ShapeError> {
-        if triangles > MAX_TRIANGLES {
-            return Err(ShapeError::TooManyTriangles {
-                triangles,
-                limit: MAX_TRIANGLES,
-            });
-        }
+        check_triangles(triangles)?;
         Ok(Self {
             triangles: Vec::with_capacity(triangles as usize),
             ..Self::default()
@@ -60,6 +55,17 @@ impl Surface {
             .with_normals(self.normals)?
             .with_texture_coordinates(self.texture_coordinates)
     }
+}
+
+/// Refuses more than [`MAX_TRIANGLES`].
+pub(super) fn check_triangles(triangles: u64) -> Result<(), ShapeError> {
+    if triangles > MAX_TRIANGLES {
+        return Err(ShapeError::TooManyTriangles {
+            triangles,
+            limit: MAX_TRIANGLES,
+        });
+    }
+    Ok(())
 }
 
 /// A side of an axis-aligned box: where the right and the upper edge of a picture on it point.

@@ -25,8 +25,6 @@ pub(super) struct Looked {
     pub(super) gap: f64,
     /// The side with the largest gap.
     pub(super) largest_side: u8,
-    /// The facet as the surface measure needs it; `None` for points.
-    pub(super) facet: Option<Facet>,
     /// For each side whether the surface goes on in the same plane beyond it.
     pub(super) is_free: [bool; 3],
 }
@@ -58,6 +56,9 @@ pub(super) struct Adjacency {
     pub(super) looked: Vec<Looked>,
     /// The index in `looked` of the first triangle of each mesh, and the number of all.
     pub(super) firsts: Vec<usize>,
+    /// For each triangle in `looked` its facet as the surface measure needs it, if that has a certain normal; empty for
+    /// points.
+    facets: Vec<Option<Facet>>,
     /// In the order of their ends.
     pub(super) edges: Vec<SharedEdge>,
 }
@@ -87,42 +88,54 @@ impl Adjacency {
         for found in found {
             firsts.push(firsts.last().unwrap_or(&0) + found.above.len());
         }
-        let seen: Vec<(Looked, Vec<KeyedMember>)> = all
-            .into_par_iter()
-            .enumerate()
-            .map(|(number, (mesh, index))| {
-                let of_mesh = meshes[mesh as usize];
-                let positions = of_mesh.positions();
-                let corners = of_mesh.triangles()[index as usize];
-                let offsets = corners.map(|corner| positions[corner as usize] - observer);
-                let gaps = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| edge_gap(offsets[i], offsets[j]));
+        let offsets_of = |mesh: u32, index: u32| {
+            let of_mesh = meshes[mesh as usize];
+            let corners = of_mesh.triangles()[index as usize];
+            corners.map(|corner| of_mesh.positions()[corner as usize] - observer)
+        };
+        let mut looked: Vec<Looked> = all
+            .par_iter()
+            .map(|&(mesh, index)| {
+                let offsets = offsets_of(mesh, index);
+                let gaps = gaps_of_sides(offsets);
                 let largest_side =
                     (0..3).fold(0, |l: usize, i| if gaps[i] > gaps[l] { i } else { l });
-                let looked = Looked {
+                Looked {
                     mesh,
                     index,
                     gap: triangle_gap(offsets[0], offsets[1], offsets[2]),
                     largest_side: largest_side as u8,
-                    facet: motion.and_then(|motion| Facet::new(motion, offsets)),
                     is_free: [false; 3],
-                };
-                let members = sides(corners).into_iter().zip(gaps).zip(0..);
-                let members = members.filter_map(|((side, gap), number_of_side)| {
-                    let ends = side.map(|vertex| positions[vertex as usize] - observer);
-                    let pair = canonical(side, positions);
-                    let [from, to] = pair.map(|vertex| key(positions[vertex as usize]));
-                    let member = Member {
-                        looked: number as u32,
-                        side: number_of_side,
-                        pair,
-                    };
-                    (gap > small(&ends)).then_some((from, to, member))
-                });
-                (looked, members.collect())
+                }
             })
             .collect();
-        let (mut looked, members): (Vec<Looked>, Vec<_>) = seen.into_iter().unzip();
-        let mut members = members.concat();
+        let facets: Vec<Option<Facet>> = match motion {
+            Some(motion) => all
+                .par_iter()
+                .map(|&(mesh, index)| Facet::new(motion, offsets_of(mesh, index)))
+                .collect(),
+            None => vec![],
+        };
+        let small = &small;
+        let members_of = |(number, &(mesh, index)): (usize, &(u32, u32))| {
+            let positions = meshes[mesh as usize].positions();
+            let corners = meshes[mesh as usize].triangles()[index as usize];
+            let gaps = gaps_of_sides(offsets_of(mesh, index));
+            let members = sides(corners).into_iter().zip(gaps).zip(0..);
+            members.filter_map(move |((side, gap), number_of_side)| {
+                let ends = side.map(|vertex| positions[vertex as usize] - observer);
+                let pair = canonical(side, positions);
+                let [from, to] = pair.map(|vertex| key(positions[vertex as usize]));
+                let member = Member {
+                    looked: number as u32,
+                    side: number_of_side,
+                    pair,
+                };
+                (gap > small(&ends)).then_some((from, to, member))
+            })
+        };
+        let members = all.par_iter().enumerate().flat_map_iter(members_of);
+        let mut members: Vec<KeyedMember> = members.collect();
         // Members with equal keys are ordered as well, so that the result is the same for any number of threads.
         members
             .par_sort_unstable_by_key(|&(from, to, member)| (from, to, member.looked, member.side));
@@ -138,7 +151,7 @@ impl Adjacency {
                 SharedEdge {
                     ends,
                     gap: edge_gap(ends[0] - observer, ends[1] - observer),
-                    is_free: is_free(meshes, &looked, &members),
+                    is_free: is_free(meshes, &looked, &facets, &members),
                     members,
                 }
             })
@@ -151,9 +164,30 @@ impl Adjacency {
         Self {
             looked,
             firsts,
+            facets,
             edges,
         }
     }
+
+    /// How far, in the rest frame, facets that count as parts of one plane may be from it: as far as rays lead, a few
+    /// times as far as their corners.
+    pub(super) fn off_plane(&self, meshes: &[&Mesh]) -> f64 {
+        const FEW: f64 = 4.0;
+        if !self.edges.iter().any(|edge| edge.is_free) {
+            return 0.0;
+        }
+        let sizes = meshes.iter().flat_map(|mesh| mesh.positions());
+        FEW * IN_PLANE * sizes.fold(0.0, |size: f64, place| size.max(place.length()))
+    }
+
+    /// The facet of a triangle in the list `looked`, as the surface measure needs it.
+    pub(super) fn facet(&self, number: usize) -> Option<Facet> {
+        self.facets.get(number).copied().flatten()
+    }
+}
+
+fn gaps_of_sides(offsets: [DVec3; 3]) -> [f64; 3] {
+    [(0, 1), (1, 2), (2, 0)].map(|(i, j)| edge_gap(offsets[i], offsets[j]))
 }
 
 fn key(position: DVec3) -> Key {
@@ -162,16 +196,21 @@ fn key(position: DVec3) -> Key {
 }
 
 /// Whether exactly two facets of one plane lie on either side of an edge, with the same side up.
-fn is_free(meshes: &[&Mesh], looked: &[Looked], members: &[Member]) -> bool {
+fn is_free(
+    meshes: &[&Mesh],
+    looked: &[Looked],
+    facets: &[Option<Facet>],
+    members: &[Member],
+) -> bool {
     let &[one, other] = members else {
         return false;
     };
     let of = |member: Member| {
+        let facet = facets.get(member.looked as usize).copied().flatten()?;
         let looked = looked[member.looked as usize];
         let positions = meshes[looked.mesh as usize].positions();
         let corners = meshes[looked.mesh as usize].triangles()[looked.index as usize];
         let corners = corners.map(|corner| positions[corner as usize]);
-        let facet = looked.facet?;
         let side = member.side as usize;
         Some((
             facet,

@@ -50,7 +50,8 @@ pub struct Certificate {
     pub triangles_out: usize,
     /// The fewest triangles with vertices on the photosurface with which the gap of the measure can be within the
     /// tolerance, for a small tolerance, whatever the triangles of the source: an integral over the photosurface. Edges,
-    /// rims and creases are not counted; where nothing bends, the number is 0.
+    /// rims and creases are not counted; where nothing bends, the number is 0. Of a round shape without a resolution: with
+    /// corners on its true surface.
     pub minimum_triangles: f64,
     /// The same with at least one triangle for each triangle of the source, and as many as the pieces into which its
     /// sides have to be divided ask for.

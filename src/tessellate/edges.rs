@@ -17,7 +17,7 @@ const FEW_PIECES: f64 = 2.0;
 
 /// The largest side of a triangle with too large a gap is not divided if its own gap is less than this fraction of the
 /// allowed one: a point inside is better then.
-const LARGEST: f64 = 0.9;
+pub(super) const LARGEST: f64 = 0.9;
 
 /// The source of a new vertex: corners of the old mesh, and weights that interpolate them.
 #[derive(Clone, Copy, Debug)]
@@ -111,7 +111,7 @@ pub(super) fn divided_edges(
         .collect();
     let division = |edge: &SharedEdge| -> Option<Vec<f64>> {
         let facets: Vec<Option<Facet>> = (edge.members.iter())
-            .map(|member| adjacency.looked[member.looked as usize].facet)
+            .map(|member| adjacency.facet(member.looked as usize))
             .collect();
         let rule = EdgeRule {
             allowance,

@@ -16,6 +16,14 @@ mod along;
 mod ceiling;
 mod certificate;
 mod chart;
+#[cfg_attr(
+    not(test),
+    allow(
+        dead_code,
+        reason = "exports use of it the fewest triangles by theory so far"
+    )
+)]
+mod curved;
 mod edge;
 mod edges;
 mod gap;
@@ -37,6 +45,7 @@ mod survey;
 pub(crate) use allowance::Allowance;
 pub(crate) use certificate::{Bounds, Counts, Singles, rounding_bound};
 pub use certificate::{Certificate, Precision};
+pub(crate) use curved::{About, Allowed, Sight, needed};
 pub use gap::{edge_gap, triangle_gap, triangle_gap_place};
 use minimum::minimum_triangles;
 pub(crate) use motion::Motion;

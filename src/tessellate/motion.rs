@@ -37,6 +37,12 @@ impl Motion {
         }
     }
 
+    /// A bound, as a gap, on how far places are seen apart that are so far from each other in the rest frame.
+    pub(super) fn as_gap(&self, distance: f64) -> f64 {
+        // No stretch is larger than gamma (1 + beta).
+        2.0 * distance * (self.gamma / self.gamma_beta)
+    }
+
     /// The normal `N` of the photosurface for the normal `s` of a facet, in the direction `q`. The result is as long as
     /// `s` times `N` of a unit normal; `q` may be shorter than 1.
     #[inline(always)]

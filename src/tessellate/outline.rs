@@ -102,9 +102,9 @@ impl Outline {
         let more = Count::up_to(most_more);
         let edges = divided_edges(meshes, adjacency, observer, &aimed, motion, &more)?;
         let rims = Rims::new(meshes, adjacency, &edges, observer, motion);
-        let all = adjacency.looked.par_iter().zip(&rims.judges);
+        let all = adjacency.looked.par_iter().enumerate();
         let all: Vec<Need> = all
-            .map(|(looked, judge)| {
+            .map(|(number, looked)| {
                 let mesh = meshes[looked.mesh as usize];
                 let edges = &edges[looked.mesh as usize];
                 Need::of(
@@ -113,7 +113,7 @@ impl Outline {
                     observer,
                     edges,
                     (&aimed, motion),
-                    judge.as_ref(),
+                    rims.judge(number),
                 )
             })
             .collect();
@@ -144,16 +144,14 @@ impl Outline {
             let looked_at = needs.iter().zip(&found.above);
             looked_at.map(move |(&need, &index)| (mesh, index, need))
         });
-        let divided = all
-            .zip(&self.rims.judges)
-            .filter_map(|((mesh, index, need), judge)| {
-                need.is_divided.then_some(Divided {
-                    mesh,
-                    index,
-                    need,
-                    judge: *judge,
-                })
-            });
+        let divided = all.enumerate().filter_map(|(number, (mesh, index, need))| {
+            need.is_divided.then_some(Divided {
+                mesh,
+                index,
+                need,
+                number,
+            })
+        });
         divided.collect()
     }
 }
@@ -164,7 +162,8 @@ pub(super) struct Divided {
     pub(super) mesh: usize,
     pub(super) index: u32,
     pub(super) need: Need,
-    pub(super) judge: Option<Judge>,
+    /// Its number in the list [`Adjacency::looked`].
+    pub(super) number: usize,
 }
 
 /// The needs of one triangle of the survey's list `above`.

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::adjacency::Adjacency;
 use super::edge::{EDGE_SHARE, fewest_pieces, point_between, rim_gap_share};
-use super::edges::{Edges, Origin, canonical, sides};
+use super::edges::{Edges, LARGEST, Origin, canonical, sides};
 use super::outline::{Divided, Need, Outline};
 use super::pieces::{Corner, Pieces};
 use super::room::Room;
@@ -52,9 +52,9 @@ pub(crate) fn refine(
     motion: Option<&Motion>,
 ) -> Vec<Refined> {
     // A triangle whose cheap bound is this small is never divided, and neither are its edges, because their gaps are
-    // not larger.
+    // not larger, whatever a neighbour asks for.
     let small = match allowance {
-        Allowance::Everywhere(allowed) => EDGE_SHARE * allowed,
+        Allowance::Everywhere(allowed) => LARGEST * EDGE_SHARE * allowed,
         Allowance::Angle { .. } => 0.0,
     };
     let small_edge = |offsets: &[DVec3]| 0.5 * EDGE_SHARE * allowance.between(offsets);
@@ -65,6 +65,7 @@ pub(crate) fn refine(
     let adjacency = Adjacency::new(meshes, &found, observer, motion, small_edge);
     let measure = (allowance, motion);
     let mut outline = Outline::within(meshes, &adjacency, observer, measure, most_more);
+    let off_plane = motion.map_or(0.0, |motion| motion.as_gap(adjacency.off_plane(meshes)));
     let sources = with_sides(meshes, &adjacency, observer, whole, motion);
     let divided: Vec<Divided> = outline.divided(&found);
     let weights = divided.iter().map(|divided| divided.need.inside);
@@ -83,7 +84,7 @@ pub(crate) fn refine(
                     mesh,
                     index,
                     need,
-                    judge,
+                    number,
                 } = divided[number];
                 let corners = meshes[mesh].triangles()[index as usize];
                 let (positions, edges) = (meshes[mesh].positions(), &outline.edges[mesh]);
@@ -92,7 +93,7 @@ pub(crate) fn refine(
                     corners.map(|corner| positions[corner as usize]),
                     observer,
                     &points,
-                    (&outline.allowance, judge.as_ref()),
+                    (&outline.allowance, outline.rims.judge(number)),
                     need.max_points(points.len()),
                     Grant { granted, is_last },
                 );
@@ -133,6 +134,7 @@ pub(crate) fn refine(
             if !found.above.is_empty() {
                 assemble(mesh, &found.above, &needs, outcomes, edges, &mut refined);
             }
+            refined.surface_gap += off_plane;
             refined
         })
         .collect()

@@ -79,9 +79,9 @@ impl Judge {
 
 /// The judges of all triangles that are looked at.
 pub(super) struct Rims {
-    /// In the order of [`Adjacency::looked`]; `None` for a triangle that counts with its gap.
-    pub(super) judges: Vec<Option<Judge>>,
-    /// For each triangle the number of the plane's piece to which it belongs.
+    /// In the order of [`Adjacency::looked`]; `None` for a triangle that counts with its gap, and no list for points.
+    judges: Vec<Option<Judge>>,
+    /// For each triangle the number of the plane's piece to which it belongs; empty for points.
     pub(super) regions: Vec<u32>,
 }
 
@@ -94,11 +94,10 @@ impl Rims {
         observer: DVec3,
         motion: Option<&Motion>,
     ) -> Self {
-        let count = adjacency.looked.len();
         let Some(motion) = motion else {
             return Self {
-                judges: vec![None; count],
-                regions: vec![0; count],
+                judges: vec![],
+                regions: vec![],
             };
         };
         let regions = regions(adjacency);
@@ -121,20 +120,20 @@ impl Rims {
                 })
             })
             .collect();
-        let mut of_regions = vec![0.0f64; count];
+        let mut of_regions = vec![0.0f64; regions.len()];
         for (costs, &region) in costs.iter().zip(&regions) {
             let cost = costs.iter().fold(0.0, |l: f64, &cost| l.max(cost));
             let of_region = &mut of_regions[region as usize];
             *of_region = of_region.max(cost);
         }
-        let judges = adjacency.looked.iter().zip(costs).zip(&regions);
-        let judges = judges.map(|((looked, costs), &region)| {
+        let judges = adjacency.looked.iter().enumerate().zip(costs).zip(&regions);
+        let judges = judges.map(|(((number, looked), costs), &region)| {
             let mesh = meshes[looked.mesh as usize];
             let corners = mesh.triangles()[looked.index as usize];
             let [a, b, c] = corners.map(|corner| mesh.positions()[corner as usize]);
             let area = (b - a).cross(c - a).length();
             Some(Judge {
-                facet: looked.facet?,
+                facet: adjacency.facet(number)?,
                 beyond: [0, 1, 2].map(|side| match looked.is_free[side] {
                     true => of_regions[region as usize],
                     false => costs[side],
@@ -146,6 +145,11 @@ impl Rims {
             judges: judges.collect(),
             regions,
         }
+    }
+
+    /// The judge of a triangle in the list [`Adjacency::looked`].
+    pub(super) fn judge(&self, number: usize) -> Option<&Judge> {
+        self.judges.get(number)?.as_ref()
     }
 }
 

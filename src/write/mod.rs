@@ -16,6 +16,7 @@ mod page;
 mod ply;
 mod range;
 mod report;
+mod seal;
 mod size;
 mod text;
 
@@ -31,8 +32,11 @@ pub use film::{
     FilmError, FilmFormat, FilmFormatError, FilmSettings, FilmWriter, FrameRate, FrameRateError,
 };
 pub use format::Format;
+pub(crate) use gltf::write_sealed_gltf;
 pub use gltf::{GltfFile, GltfOutput, replaced_data, write_glb, write_gltf, write_whole_gltf};
 pub use page::{PageContent, write_page};
 pub use ply::write_ply;
+pub(crate) use ply::write_sealed_ply;
 pub(crate) use report::schema_of;
 pub use report::{OutputFile, Provenance, Report, StageTime};
+pub use seal::{Fingerprint, Seal};

@@ -12,7 +12,7 @@ use std::io::Write;
 use glam::{DVec3, Vec4};
 
 use super::layer::{Layer, Numbers, Scalar, layers};
-use super::{Export, WriteError};
+use super::{Export, Seal, WriteError};
 use crate::effects::byte_of_linear;
 use crate::mesh::{Mesh, VERTICES_AT_ONCE};
 use crate::pipeline::Photosurface;
@@ -22,7 +22,16 @@ use crate::pipeline::Photosurface;
 /// # Errors
 ///
 /// A mesh without triangles, a number at a vertex that is none, more than 2^32 - 1 vertices, or the writer fails.
-pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), WriteError> {
+pub fn write_ply(export: &Export<'_>, writer: impl Write) -> Result<(), WriteError> {
+    write_sealed_ply(export, None, writer)
+}
+
+/// As [`write_ply`]; a seal, which is to be closed when the file is written, becomes a comment.
+pub(crate) fn write_sealed_ply(
+    export: &Export<'_>,
+    seal: Option<&Seal>,
+    mut writer: impl Write,
+) -> Result<(), WriteError> {
     let layers: Vec<Layer<'_>> = layers(export).collect();
     let vertices: usize = layers.iter().map(|layer| layer.mesh.vertex_count()).sum();
     let triangles: usize = layers.iter().map(|layer| layer.mesh.triangle_count()).sum();
@@ -51,6 +60,9 @@ pub fn write_ply(export: &Export<'_>, mut writer: impl Write) -> Result<(), Writ
     )?;
     for line in comment_lines(&export.scene.copyright().unwrap_or_default()) {
         writeln!(writer, "comment copyright {line}")?;
+    }
+    if let Some(seal) = seal {
+        writeln!(writer, "comment {}", seal.text())?;
     }
     write!(
         writer,

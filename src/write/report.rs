@@ -2,8 +2,9 @@
 
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
+use super::Seal;
 use crate::pipeline::{Facts, SceneFacts};
 
 /// What was made, of what, and how long it took.
@@ -20,6 +21,18 @@ pub struct Report {
     pub provenance: Provenance,
     /// The files written, in their order; the data of a `.gltf` comes after it.
     pub outputs: Vec<OutputFile>,
+    /// The files that were finished before, and were not made anew; `objects` has none of their photosurfaces.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub resumed: Vec<String>,
+    /// By what a later run knows that the report and its file are finished, where they may be resumed.
+    #[serde(skip_serializing_if = "Option::is_none", serialize_with = "as_text")]
+    #[schemars(with = "Option<String>")]
+    pub seal: Option<Seal>,
+}
+
+fn as_text<S: Serializer>(seal: &Option<Seal>, serializer: S) -> Result<S::Ok, S::Error> {
+    let text = seal.as_ref().map(Seal::text);
+    text.serialize(serializer)
 }
 
 /// What something was made of, and how.

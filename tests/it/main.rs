@@ -64,6 +64,7 @@ mod import {
 mod export {
     mod animation;
     mod camera;
+    mod crowd;
     mod hard_properties;
     mod jobs;
     mod large;
@@ -92,7 +93,9 @@ mod cli {
     mod measures;
     mod models;
     mod normals;
+    mod parts;
     mod render;
+    mod sweep;
 }
 
 mod page {

@@ -23,7 +23,9 @@ use crate::pipeline::{Photosurface, PlacedSceneError, SceneFacts, step_label};
 use crate::scene::Attributes;
 use crate::write::layer::{Layer, Numbers, Scalar};
 use crate::write::pack::{Bounds, Packing};
-use crate::write::{Export, FRAMES_PER_SECOND, GltfOutput, ObserverCamera, Playback, WriteError};
+use crate::write::{
+    Export, FRAMES_PER_SECOND, GltfOutput, ObserverCamera, Playback, Seal, WriteError,
+};
 
 /// Writes one GLB.
 ///
@@ -87,6 +89,8 @@ pub struct GltfFile<'a> {
     materials: Materials,
     attributes: Attributes,
     playback: Option<Playback>,
+    /// The text of the seal, once it is known.
+    seal: Option<String>,
 }
 
 impl<'a> GltfFile<'a> {
@@ -117,6 +121,7 @@ impl<'a> GltfFile<'a> {
             materials: Materials::default(),
             attributes,
             playback,
+            seal: None,
         };
         if let Some(marker) = marker {
             let node = file.add_layer(&Layer::from(marker))?;
@@ -136,6 +141,11 @@ impl<'a> GltfFile<'a> {
         let node = self.add_layer(&Layer::from(photosurface))?;
         self.step_nodes.add(Some(photosurface.facts.step), node);
         Ok(())
+    }
+
+    /// Gives the file a seal, which is to be closed when the file is written.
+    pub(crate) fn set_seal(&mut self, seal: &Seal) {
+        self.seal = Some(seal.text());
     }
 
     /// Whether the scene has the step of a photosurface.
@@ -269,6 +279,9 @@ impl<'a> GltfFile<'a> {
             let frames_per_second = playback.frames_per_second();
             scene_extras["frames_per_second"] = frames_per_second.into();
             self.animate(frames_per_second)?;
+        }
+        if let Some(seal) = &self.seal {
+            scene_extras["seal"] = seal.as_str().into();
         }
         let images = self.materials.images().to_vec();
         // Images that a file made of the same bytes share them here too.

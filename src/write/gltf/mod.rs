@@ -14,4 +14,5 @@ mod tracks;
 
 pub use file::{GltfFile, write_glb, write_gltf};
 pub use output::GltfOutput;
+pub(crate) use pair::write_sealed_gltf;
 pub use pair::{replaced_data, write_whole_gltf};

@@ -14,7 +14,7 @@ use percent_encoding::percent_decode_str;
 use serde::Deserialize;
 
 use crate::write::file::{Destination, directory_of, io_error, persist_both, temporary_in};
-use crate::write::{GltfOutput, WriteError};
+use crate::write::{GltfOutput, Seal, WriteError};
 
 /// How often, and how far apart, it is tried to be alone in a directory.
 const TRIES: u32 = 200;
@@ -36,6 +36,16 @@ const MAX_SEARCHED: u64 = 1 << 30;
 pub fn write_whole_gltf<T>(
     path: &Path,
     content: impl FnOnce(GltfOutput<'_>) -> Result<T, WriteError>,
+    before_they_appear: impl FnOnce(T, [(PathBuf, u64); 2]) -> Result<(), WriteError>,
+) -> Result<PathBuf, WriteError> {
+    write_sealed_gltf(path, content, |_| None, before_they_appear)
+}
+
+/// As [`write_whole_gltf`]; the seal of the result of `content`, if it has one, is closed in the JSON.
+pub(crate) fn write_sealed_gltf<T>(
+    path: &Path,
+    content: impl FnOnce(GltfOutput<'_>) -> Result<T, WriteError>,
+    seal: impl FnOnce(&T) -> Option<Seal>,
     before_they_appear: impl FnOnce(T, [(PathBuf, u64); 2]) -> Result<(), WriteError>,
 ) -> Result<PathBuf, WriteError> {
     let here = |source| io_error(path, source);
@@ -68,6 +78,9 @@ pub fn write_whole_gltf<T>(
     data_writer.flush().map_err(here)?;
     json_writer.flush().map_err(here)?;
     drop((json_writer, data_writer));
+    if let Some(seal) = seal(&made) {
+        seal.close(json.file()).map_err(here)?;
+    }
 
     let binary = path.with_file_name(&name);
     let length = |file: &mut File| file.metadata().map(|data| data.len()).map_err(here);

@@ -29,6 +29,25 @@ fn triangles(report: &Value) -> u64 {
         .sum()
 }
 
+/// The numbers of the passing sphere were found by a program of its own, which integrates the square root of the
+/// Gaussian curvature (Pottmann et al. 2000).
+#[test]
+fn the_least_triangles_of_a_sphere_are_those_of_theory() {
+    let workplace = Workplace::new();
+    let run =
+        workplace.run("export --example sphere --measure surface -o out.glb --report report.json");
+    assert_eq!(run.status, 0, "{run}");
+    let report = workplace.read_json("report.json");
+    let objects = report["objects"].as_array().expect("objects");
+    let expected = [556.0, 619.0, 725.0, 748.0, 726.0, 705.0, 697.0];
+    assert_eq!(objects.len(), expected.len());
+    for (object, expected) in objects.iter().zip(expected) {
+        let least = object["certificate"]["minimum_triangles"].as_f64();
+        let off = least.expect("a number") / expected - 1.0;
+        assert!(off.abs() < 5e-3, "{object:#}: {expected}");
+    }
+}
+
 #[test]
 fn accuracy_is_asked_for_in_three_units_and_certified() {
     let workplace = Workplace::new();

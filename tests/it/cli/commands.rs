@@ -65,6 +65,7 @@ fn the_readmes_commands_work() {
         "thrust.json",
         r#"[{ "proper_time": 6, "acceleration": [0, 0, -0.5] }]"#,
     );
+    workplace.write("speeds.json", r#"[{ "beta": 0.5 }, { "gamma": 5 }]"#);
     let count = run_commands(&workplace, include_str!("../../../README.md"));
     assert!(count >= 5, "only {count} commands found in the README");
 }

@@ -60,6 +60,8 @@ pub fn export(bytes: &[u8]) {
             stages: vec![],
             provenance: Default::default(),
             outputs: vec![],
+            resumed: vec![],
+            seal: None,
         };
         assert!(!report.to_json().is_empty());
         for photosurface in made.iter().flatten() {

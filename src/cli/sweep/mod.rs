@@ -1,0 +1,8 @@
+//! `photosurface sweep`: many runs of one command in one process, from a list of overrides.
+
+mod file;
+mod rows;
+mod run;
+
+pub(super) use file::json_schema;
+pub(super) use run::{SweepArgs, run};

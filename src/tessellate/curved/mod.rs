@@ -1,0 +1,33 @@
+//! Round shapes: triangles with vertices on the exact surface, along the bend of its photosurface, with a proven bound.
+//!
+//! A `sight` is how one observer sees the shape. `metric` says which triangles are wanted where. A `net` of triangles
+//! starts with few of them, with `rims` divided already; a `front` adds vertices, `refine` divides what that has left and
+//! takes away and moves vertices. `chart`, `bent` and `patch` describe the curved patch over a triangle, `proof` bounds the
+//! distance of both. `triangulate` puts it together, and `minimum` says how many triangles are needed.
+//!
+//! Certificates use the fewest triangles of `minimum`. The triangulation is tested here; files still have round shapes of
+//! one resolution.
+
+#![allow(
+    clippy::needless_range_loop,
+    reason = "corners, sides and axes share one index"
+)]
+
+mod bent;
+mod change;
+mod chart;
+mod estimate;
+mod front;
+mod metric;
+mod minimum;
+mod net;
+mod patch;
+mod proof;
+mod quadratic;
+mod refine;
+mod rims;
+mod sight;
+mod triangulate;
+
+pub(crate) use minimum::needed;
+pub(crate) use sight::{About, Allowed, Sight};

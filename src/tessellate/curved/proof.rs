@@ -1,0 +1,345 @@
+//! Proven bounds on the distance between a flat triangle and the true curved photosurface.
+//!
+//! # What is proven
+//!
+//! Let `M` be the mesh and `S` the photosurface of a round shape. Each triangle has a patch of `S` over it, by a chart whose
+//! parameters are the weights of its corners; together, in the charts of the pieces, they map `M` onto `S` once.
+//!
+//! **Same weights.** If no place of a patch is farther than `b` from the place of the triangle with the same weights, then
+//! each place of `M` has one of `S` within `b`, and the other way round ([`Proof::of_points`]).
+//!
+//! **Along normals.** Sliding along the surface costs nothing. Let `N` be the normal of the flat triangle and `f = N.error`
+//! the height of the patch over its plane. In the weights that the patch and its neighbourhood have in that plane, as
+//! seen along `N`, the patch is the graph of a function if weights and weights in the plane differ by a map that brings
+//! no two places closer than by a fixed factor (`is_graph`). From each place `x` of the triangle a line in the direction
+//! `n(x)`, the mean of the corners' seen normals, then meets the graph in exactly one place, where the graph's height is at
+//! most `h`, the largest `|f|` over the triangle and so much around it as lines and weights reach. That place is within
+//! `h / min(N.n)` of `x`. It depends on `x` alone, also on an edge between two triangles, and changes with `x`
+//! continuously; along the surface it can be moved to the place with the same weights. So these places cover `S` as often
+//! as those do, once, and the bound holds both ways ([`Proof::of_surface`]).
+//!
+//! **Rims.** A triangle with a chord of a rim has a chart in which that side follows the arc, and is compared at the same
+//! weights. On a lid the side is a parabola with the arc's ends and middle. With the sagitta `s` of an arc of radius `R` no
+//! place of the parabola is farther than `s^2 / (7 R)` from the arc.
+//!
+//! Where neighbours are compared in these two ways, the places that belong to one place of their common edge differ: both
+//! are within its bound, and so is the way between them along the surface, but for its bend, which [`MIXED`] has room for.
+
+use glam::{DVec2, DVec3};
+
+use super::bent::{Arc, Bent};
+use super::chart::Facet;
+use super::patch::{Bend, Corner, Patch};
+use super::sight::About;
+use super::sight::Sight;
+
+/// The corners of a whole triangle.
+const WHOLE: [DVec2; 3] = [DVec2::ZERO, DVec2::X, DVec2::Y];
+
+/// The largest part of a triangle's size by which the patch may be looked at around the triangle.
+const WIDEST: f64 = 0.4;
+
+/// The least cosine between the normals of a triangle and of its corners.
+const LEAST_COSINE: f64 = 0.1;
+
+/// How much the weights of a patch and those in the plane may differ per weight, summed over the three corners; at 2 two
+/// places might fall together.
+const MOST_SHIFT: f64 = 1.2;
+
+/// Room for the sum of the terms that keep lines from meeting a graph twice.
+const SLOPE_ROOM: f64 = 0.9;
+
+/// Room for the bend of the way between the places that two neighbours take for one place of their edge.
+const MIXED: f64 = 1.002;
+
+/// How often a part is halved, and how many places of a triangle are looked at.
+const HALVINGS: u32 = 40;
+const CONDITION_HALVINGS: u32 = 8;
+const MOST_LOOKS: u32 = 600;
+
+/// A triangle of which something is proven.
+pub(super) struct Proof<'a> {
+    chart: Bent,
+    straight: Bent,
+    sight: &'a Sight,
+    seen: [DVec3; 3],
+    looks: u32,
+}
+
+/// What has to hold for the patch to be a graph.
+struct Conditions {
+    /// The gradients of the three weights in the triangle's plane, and its normal.
+    gradients: [DVec3; 3],
+    normal: DVec3,
+    /// The least cosine between the normal and those of the corners.
+    cosine: f64,
+    /// How far lines reach aside, in weights.
+    lines: [f64; 3],
+    /// How much lines lean, in weights per length.
+    lean: f64,
+    /// How far around the triangle the patch is looked at, in weights.
+    wide: f64,
+}
+
+impl<'a> Proof<'a> {
+    /// The triangle with these seen corners; `rims` tells how the sides opposite each corner follow the arcs of rims.
+    pub(super) fn new(
+        facet: Facet,
+        about: About,
+        sight: &'a Sight,
+        seen: [DVec3; 3],
+        rims: [Option<Arc>; 3],
+    ) -> Self {
+        let straight = Bent::straight(facet);
+        let chart = match about {
+            About::Surface => Bent::new(facet, sight, seen, rims),
+            About::Points => straight,
+        };
+        Self {
+            chart,
+            straight,
+            sight,
+            seen,
+            looks: 0,
+        }
+    }
+
+    /// An upper bound on the distance of places with the same weights; where it is above `limit`, any bound.
+    pub(super) fn of_points(&mut self, limit: f64) -> f64 {
+        let part = WHOLE.map(|at| self.corner(at));
+        let axes = self.axes();
+        self.over(part, &axes, limit, HALVINGS)
+    }
+
+    /// An upper bound on the distance of the triangle and the patch as surfaces; where it is above `limit`, any bound.
+    /// `normals` are those of the photosurface at the corners; that of a tip is any other one.
+    pub(super) fn of_surface(&mut self, normals: [DVec3; 3], limit: f64) -> f64 {
+        let along_normals = self.along_normals(normals, limit);
+        if along_normals <= limit {
+            return along_normals;
+        }
+        along_normals.min(self.of_any_chart(limit))
+    }
+
+    /// An upper bound on the distance of places with the same weights, in the chart that is better for it; where it is above
+    /// `limit`, any bound.
+    pub(super) fn of_any_chart(&mut self, limit: f64) -> f64 {
+        self.looks = 0;
+        let bent = self.of_points(limit / MIXED) * MIXED;
+        if bent <= limit {
+            return bent;
+        }
+        self.looks = 0;
+        self.chart = self.straight;
+        bent.min(self.of_points(limit / MIXED) * MIXED)
+    }
+
+    /// The same for a triangle with a chord of a rim, of which no place of a side is farther from its arc than `beside`, in
+    /// the shape's own frame.
+    pub(super) fn of_rim(&mut self, beside: f64, limit: f64) -> f64 {
+        let part = WHOLE.map(|at| self.corner(at));
+        let patch = Patch::new(&self.chart, self.sight, &part);
+        let beside = beside * patch.steepest(self.sight);
+        self.of_points((limit - beside) / MIXED) * MIXED + beside
+    }
+
+    fn corner(&mut self, at: DVec2) -> Corner {
+        self.looks += 1;
+        let offset = self.sight.offset(self.chart.place(at));
+        let [a, b, c] = self.seen;
+        let flat = a * (1.0 - at.x - at.y) + b * at.x + c * at.y;
+        Corner {
+            at,
+            offset,
+            error: self.sight.seen_at(offset) - flat,
+        }
+    }
+
+    /// Unit vectors at right angles, the first along the triangle's normal, the second along the motion as far as it can be.
+    fn axes(&self) -> [DVec3; 3] {
+        let [a, b, c] = self.seen;
+        let normal = (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::X);
+        let motion = self.sight.motion - normal * normal.dot(self.sight.motion);
+        let along = motion.try_normalize().filter(|_| motion.length() > 1e-3);
+        let along = along.unwrap_or_else(|| normal.any_orthonormal_vector());
+        [normal, along, normal.cross(along)]
+    }
+
+    /// The gradients of the three weights in the plane of the triangle.
+    fn gradients(&self) -> Option<[DVec3; 3]> {
+        let [a, b, c] = self.seen;
+        let area = (b - a).cross(c - a);
+        let square = area.length_squared();
+        let found = [c - b, a - c, b - a].map(|side| area.cross(side) / square);
+        found.iter().all(|g| g.is_finite()).then_some(found)
+    }
+
+    fn along_normals(&mut self, normals: [DVec3; 3], limit: f64) -> f64 {
+        let [a, b, c] = self.seen;
+        let Some(normal) = (b - a).cross(c - a).try_normalize() else {
+            return f64::INFINITY;
+        };
+        let Some(gradients) = self.gradients() else {
+            return f64::INFINITY;
+        };
+        let cosine = normals.iter().map(|n| n.dot(normal)).fold(1.0, f64::min) * (1.0 - 1e-12);
+        if !(cosine > LEAST_COSINE) {
+            return f64::INFINITY;
+        }
+        let lines = gradients.map(|g| {
+            let lean = normals.iter().map(|n| g.dot(*n).abs()).fold(0.0, f64::max);
+            lean * limit / cosine
+        });
+        let lean = |n: &DVec3| 0.5 * gradients.iter().map(|g| g.dot(*n).abs()).sum::<f64>();
+        let shift = |corner: &Corner| gradients.map(|g| g.dot(corner.error).abs());
+        let near = widened(0.05).map(|at| self.corner(at));
+        let guess = near
+            .iter()
+            .map(shift)
+            .fold([0.0; 3], |a, b| [0, 1, 2].map(|k| f64::max(a[k], b[k])));
+        let guess = (0..3).map(|k| guess[k] + lines[k]).fold(0.0, f64::max);
+        let wide = 1.5 * guess + 0.01;
+        if !(wide < WIDEST) {
+            return f64::INFINITY;
+        }
+        let conditions = Conditions {
+            lean: normals.iter().map(lean).fold(0.0, f64::max),
+            gradients,
+            normal,
+            cosine,
+            lines,
+            wide,
+        };
+        let part = widened(wide).map(|at| self.corner(at));
+        if !self.is_graph(part, &conditions, CONDITION_HALVINGS) {
+            return f64::INFINITY;
+        }
+        self.over(part, &[normal], limit * cosine, HALVINGS) / cosine
+    }
+
+    /// Whether a part keeps to the conditions.
+    fn is_graph(&mut self, part: [Corner; 3], conditions: &Conditions, halvings: u32) -> bool {
+        let Conditions {
+            gradients,
+            normal,
+            cosine,
+            lines,
+            lean,
+            wide,
+        } = conditions;
+        let patch = Patch::new(&self.chart, self.sight, &part);
+        let height = patch.bend(self.sight, *normal);
+        let weights = gradients.map(|g| patch.bend(self.sight, g));
+        // In its plane the flat triangle has the gradients of the weights themselves.
+        const OWN: [[f64; 2]; 3] = [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]];
+        const SIDES: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]];
+        // The largest shift and slope along any side: those of the middle, and with what the box adds.
+        let (mut shift, mut slope) = ([0.0f64; 2], [0.0f64; 2]);
+        for [x, y] in SIDES {
+            let of = |bend: &Bend, own: [f64; 2]| {
+                let middle = ((bend.first[0] - own[0]) * x + (bend.first[1] - own[1]) * y).abs();
+                [
+                    middle,
+                    middle + bend.first_change[0] * x.abs() + bend.first_change[1] * y.abs(),
+                ]
+            };
+            let shifts = [0, 1, 2].map(|k| of(&weights[k], OWN[k]));
+            let slopes = of(&height, [0.0; 2]);
+            for k in 0..2 {
+                shift[k] = shift[k].max(shifts.iter().map(|s| s[k]).sum());
+                slope[k] = slope[k].max(slopes[k]);
+            }
+        }
+        let steepest = SLOPE_ROOM * (1.0 - 0.5 * MOST_SHIFT) * cosine;
+        let fits = |k: usize| shift[k] <= MOST_SHIFT && lean * slope[k] <= steepest;
+        let moved = |k: usize| {
+            let at_corners = part
+                .iter()
+                .map(|corner| gradients[k].dot(corner.error).abs());
+            at_corners.fold(0.0, f64::max) + lines[k]
+        };
+        if fits(1) && (0..3).all(|k| moved(k) + patch.bulge(&weights[k]) <= *wide) {
+            return true;
+        }
+        let hopeless = !fits(0) || (0..3).any(|k| moved(k) > *wide);
+        if hopeless || halvings == 0 || self.looks > MOST_LOOKS {
+            return false;
+        }
+        let [a, b] = self.halves(&part, &patch, &weights);
+        self.is_graph(a, conditions, halvings - 1) && self.is_graph(b, conditions, halvings - 1)
+    }
+
+    /// The halves of a part, whose longest side is divided: that which bends most.
+    fn halves(&mut self, part: &[Corner; 3], patch: &Patch, bends: &[Bend]) -> [[Corner; 3]; 2] {
+        let bent = |k: usize| {
+            let side = part[(k + 2) % 3].at - part[(k + 1) % 3].at;
+            bends
+                .iter()
+                .map(|bend| patch.along(bend, side))
+                .fold(0.0, f64::max)
+        };
+        let mut sizes = [0, 1, 2].map(bent);
+        if !sizes.iter().all(|size| size.is_finite()) {
+            sizes =
+                [0, 1, 2].map(|k| (part[(k + 2) % 3].offset - part[(k + 1) % 3].offset).length());
+        }
+        let k = (0..3).fold(0, |best, k| if sizes[k] > sizes[best] { k } else { best });
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        let middle = self.corner(0.5 * (part[i].at + part[j].at));
+        let (mut a, mut b) = (*part, *part);
+        (a[j], b[i]) = (middle, middle);
+        [a, b]
+    }
+
+    /// An upper bound on the largest size of the error's components along `axes` over a part; where it is above `limit`,
+    /// any bound.
+    fn over(&mut self, part: [Corner; 3], axes: &[DVec3], limit: f64, halvings: u32) -> f64 {
+        let patch = Patch::new(&self.chart, self.sight, &part);
+        let size = |error: DVec3| {
+            axes.iter()
+                .map(|axis| axis.dot(error).powi(2))
+                .sum::<f64>()
+                .sqrt()
+        };
+        let at_corners = part
+            .iter()
+            .map(|corner| size(corner.error))
+            .fold(0.0, f64::max);
+        let mut bends = Vec::with_capacity(axes.len());
+        bends.extend(axes.iter().map(|&axis| patch.bend(self.sight, axis)));
+        let bound = match (axes, &bends[..]) {
+            ([axis], [bend]) => patch.largest(bend, *axis, &part),
+            _ => {
+                let bulge = bends
+                    .iter()
+                    .map(|bend| patch.bulge(bend).powi(2))
+                    .sum::<f64>()
+                    .sqrt();
+                let each = axes
+                    .iter()
+                    .zip(&bends)
+                    .map(|(&axis, bend)| patch.largest(bend, axis, &part).powi(2));
+                (at_corners + bulge).min(each.sum::<f64>().sqrt())
+            }
+        };
+        if bound <= limit || at_corners > limit || halvings == 0 || self.looks > MOST_LOOKS {
+            return bound.max(at_corners);
+        }
+        let [a, b] = self.halves(&part, &patch, &bends);
+        let of_one = self.over(a, axes, limit, halvings - 1);
+        if of_one > limit {
+            return of_one;
+        }
+        of_one.max(self.over(b, axes, limit, halvings - 1))
+    }
+}
+
+/// The corners of a triangle that holds all places whose weights are at least `-wide`.
+fn widened(wide: f64) -> [DVec2; 3] {
+    let (far, aside) = (1.0 + 2.0 * wide, -wide);
+    [
+        DVec2::new(aside, aside),
+        DVec2::new(far, aside),
+        DVec2::new(aside, far),
+    ]
+}

@@ -1,0 +1,356 @@
+//! What the front has left: edges divided and turned, vertices taken away and moved, by the distance from the photosurface.
+
+use std::collections::BinaryHeap;
+
+use super::chart::Facet;
+use super::estimate::Estimate;
+use super::front::Turn;
+use super::net::{NONE, Net, Task, half_edges_of, next, previous, triangle_of};
+use super::sight::About;
+use crate::shape::{Piece, Spot};
+
+/// An edge is turned and a vertex moved only if the worse of its triangles becomes better than this fraction.
+const BETTER: f64 = 0.999;
+
+/// Triangles below these fractions of the allowed distance are not worth a turn or a move.
+const GOOD: f64 = 0.05;
+const GOOD_TO_STAY: f64 = 0.3;
+
+/// The allowed fraction up to which vertices are taken away.
+const FULL: f64 = 0.98;
+
+/// Steps of moved vertices, as a part of the way to the opposite side; and how often all of it is done.
+const STEPS: [f64; 2] = [0.25, 0.12];
+const ROUNDS: usize = 2;
+
+/// Limit on turns of edges after one change.
+const TURNS: usize = 200;
+
+impl Net<'_> {
+    /// Turns an edge if that lessens the larger distance of its two triangles.
+    fn improve(&mut self, half_edge: u32) -> Option<[usize; 2]> {
+        let twin = self.twin(half_edge);
+        let (t0, t1) = (triangle_of(half_edge), triangle_of(twin));
+        let now = self.estimates[t0].whole.max(self.estimates[t1].whole);
+        if now < GOOD {
+            return None;
+        }
+        let made = self.turned(half_edge)?;
+        let of = self.of[t0];
+        if !made.iter().all(|&corners| self.is_sound(corners, of)) {
+            return None;
+        }
+        let [bc, ca, ad, db] = [
+            next(half_edge),
+            previous(half_edge),
+            next(twin),
+            previous(twin),
+        ]
+        .map(|e| self.is_rim(e));
+        // The sides opposite the corners of [a, d, c] and of [d, b, c].
+        let first = self.assess(made[0], of, [false, ca, ad]);
+        if !(first.whole < BETTER * now) {
+            return None;
+        }
+        let second = self.assess(made[1], of, [bc, false, db]);
+        if !(second.whole < BETTER * now) {
+            return None;
+        }
+        let turned = self.turn(half_edge, made);
+        (self.estimates[turned[0]], self.estimates[turned[1]]) = (first, second);
+        Some(turned)
+    }
+
+    /// Turns edges, these and those beside turned ones; returns the triangles that have changed.
+    fn improve_around(&mut self, mut edges: Vec<u32>) -> Vec<usize> {
+        let (mut changed, mut left) = (vec![], TURNS + edges.len());
+        while let Some(half_edge) = edges.pop() {
+            left -= 1;
+            if left == 0 {
+                break;
+            }
+            if !self.alive[triangle_of(half_edge)] {
+                continue;
+            }
+            if let Some([t0, t1]) = self.improve(half_edge) {
+                changed.extend([t0, t1]);
+                edges.extend([3 * t0, 3 * t0 + 2, 3 * t1, 3 * t1 + 1].map(|e| e as u32));
+            }
+        }
+        changed
+    }
+
+    /// Turns all edges that are better turned.
+    fn improve_all(&mut self) {
+        for half_edge in 0..3 * self.triangles.len() as u32 {
+            if self.alive[triangle_of(half_edge)] && half_edge < self.twin(half_edge) {
+                self.improve(half_edge);
+            }
+        }
+    }
+
+    /// Divides the worst sides until every triangle is near enough, or until there are more triangles than `most`.
+    pub(super) fn refine(&mut self, most: usize) {
+        self.improve_all();
+        let all = (0..self.triangles.len()).filter(|&t| self.alive[t]);
+        let mut queue: BinaryHeap<Turn> = all.map(|t| Turn(self.estimates[t].whole, t)).collect();
+        while let Some(Turn(distance, triangle)) = queue.pop() {
+            if !(distance > 1.0) || self.triangles.len() > most {
+                return;
+            }
+            if self.alive[triangle] && self.estimates[triangle].whole == distance {
+                for changed in self.divide(triangle) {
+                    queue.push(Turn(self.estimates[changed].whole, changed));
+                }
+            }
+        }
+    }
+
+    /// Divides the worst side of a triangle, and turns edges around it; returns the triangles that have changed.
+    pub(super) fn divide(&mut self, triangle: usize) -> Vec<usize> {
+        let sides = self.estimates[triangle].sides;
+        let worst = (0..3).fold(
+            0,
+            |worst, k| if sides[k] > sides[worst] { k } else { worst },
+        );
+        let made = self.split((3 * triangle + (worst + 1) % 3) as u32);
+        made.into_iter().for_each(|triangle| self.update(triangle));
+        let changed = self.improve_around(half_edges_of(&made));
+        made.into_iter().chain(changed).collect()
+    }
+
+    /// Divides the side of a triangle along which places slide most; returns the triangles that have changed. Whatever cannot
+    /// be proven becomes small enough for it in the end.
+    pub(super) fn cut(&mut self, triangle: usize) -> Vec<usize> {
+        let corners = self.triangles[triangle];
+        let task = Task {
+            about: About::Points,
+            ..self.task
+        };
+        let facet = self.facet(corners, self.of[triangle]);
+        let rims = self.rims_of(triangle);
+        let sights = task.sights.iter().enumerate();
+        let slides = sights.map(|(number, sight)| {
+            Estimate::new(
+                &facet,
+                sight,
+                task.about,
+                self.seen_by(number, corners),
+                [None; 3],
+            )
+        });
+        let mut sides = slides.fold(self.estimates[triangle], Estimate::max).sides;
+        for k in 0..3 {
+            // Chords of rims are right already, unless nothing else is wrong.
+            sides[k] *= if rims[k] && self.estimates[triangle].sides[k] <= 1.0 {
+                0.5
+            } else {
+                1.0
+            };
+        }
+        let worst = (0..3).fold(
+            0,
+            |worst, k| if sides[k] > sides[worst] { k } else { worst },
+        );
+        let made = self.split((3 * triangle + (worst + 1) % 3) as u32);
+        made.into_iter().for_each(|triangle| self.update(triangle));
+        made.to_vec()
+    }
+
+    /// Takes away vertices and moves others, so that fewer triangles are near enough.
+    pub(super) fn tidy(&mut self) {
+        for _ in 0..ROUNDS {
+            self.thin();
+            for step in STEPS {
+                self.smooth(step);
+                self.improve_all();
+            }
+        }
+        self.thin();
+    }
+
+    /// Takes away each vertex without which all triangles are still near enough.
+    fn thin(&mut self) {
+        for vertex in 0..self.vertices.len() as u32 {
+            let Vertices { out, spot } = self.state_of(vertex);
+            if out == NONE || spot.is_fixed {
+                continue;
+            }
+            let star = self.star(vertex);
+            let mut best: Option<(f64, u32)> = None;
+            for &half_edge in &star {
+                let most = best.map_or(FULL, |(worst, _)| worst);
+                match self.without_start(&star, half_edge, most) {
+                    Some(worst) if worst < most => best = Some((worst, half_edge)),
+                    _ => {}
+                }
+            }
+            if let Some((_, half_edge)) = best {
+                let changed = self.collapse(half_edge);
+                self.improve_around(half_edges_of(&changed));
+            }
+        }
+    }
+
+    fn state_of(&self, vertex: u32) -> Vertices {
+        let vertex = &self.vertices[vertex as usize];
+        Vertices {
+            out: vertex.out,
+            spot: vertex.spot,
+        }
+    }
+
+    /// The largest estimate of the triangles around the start of an edge if it fell together with the end; `None` if that
+    /// would be more than `most` or is not possible.
+    fn without_start(&self, star: &[u32], half_edge: u32, most: f64) -> Option<f64> {
+        let kept = self.end(half_edge);
+        let start = &self.vertices[self.start(half_edge) as usize].spot;
+        if start.rim > 0 && !self.is_rim(half_edge) {
+            return None;
+        }
+        let around: Vec<u32> = star.iter().map(|&e| self.end(e)).collect();
+        let shared = self
+            .star(kept)
+            .into_iter()
+            .filter(|&e| around.contains(&self.end(e)));
+        if shared.count() != 2 {
+            return None;
+        }
+        let twin = self.twin(half_edge);
+        let removed = [triangle_of(half_edge), triangle_of(twin)];
+        // Half-edges of removed triangles, and what lies beyond them afterwards.
+        let beyond = |e: u32| match e {
+            e if e == previous(half_edge) => self.twin(next(half_edge)),
+            e if e == next(twin) => self.twin(previous(twin)),
+            e => e,
+        };
+        let left = star.iter().filter(|&&e| !removed.contains(&triangle_of(e)));
+        let left: Vec<([u32; 3], u32)> = left
+            .map(|&e| ([kept, self.end(e), self.start(previous(e))], e))
+            .collect();
+        if !left
+            .iter()
+            .all(|&(corners, e)| self.is_sound(corners, self.of[triangle_of(e)]))
+        {
+            return None;
+        }
+        let mut worst = 0.0;
+        for (corners, e) in left {
+            let of = self.of[triangle_of(e)];
+            let is_rim = |e: u32| of != self.of[triangle_of(beyond(self.twin(e)))];
+            let rims = [is_rim(next(e)), is_rim(previous(e)), is_rim(e)];
+            worst = f64::max(worst, self.assess(corners, of, rims).whole);
+            if !(worst < most) {
+                return None;
+            }
+        }
+        Some(worst)
+    }
+
+    /// Moves each vertex towards the side opposite it in the worst of its triangles, where that lessens the largest distance.
+    fn smooth(&mut self, step: f64) {
+        for vertex in 0..self.vertices.len() as u32 {
+            let Vertices { out, spot } = self.state_of(vertex);
+            if out == NONE || spot.is_fixed {
+                continue;
+            }
+            let star = self.star(vertex);
+            let distance = |e: &u32| self.estimates[triangle_of(*e)].whole;
+            let worst = star.iter().fold(star[0], |worst, e| {
+                if distance(e) > distance(&worst) {
+                    *e
+                } else {
+                    worst
+                }
+            });
+            let now = distance(&worst);
+            if now < GOOD_TO_STAY {
+                continue;
+            }
+            if let Some(moved) = self.moved(spot, worst, step) {
+                self.move_if_better(vertex, moved, &star, now);
+            }
+        }
+    }
+
+    /// The spot of a vertex, the start of a half-edge, after a step towards the opposite side.
+    fn moved(&self, spot: Spot, half_edge: u32, step: f64) -> Option<Spot> {
+        let ends = [half_edge, previous(half_edge)];
+        if spot.rim > 0 {
+            let along = ends.into_iter().find(|&e| self.is_rim(e))?;
+            let other =
+                [self.start(along), self.end(along)].map(|v| self.vertices[v as usize].spot);
+            let other = other.into_iter().find(|other| other.at != spot.at)?;
+            let turn = other.at.x - spot.at.x;
+            return Some(Spot::on_rim(
+                spot.at.x + 0.5 * step * (turn - turn.round()),
+                spot.rim,
+            ));
+        }
+        let piece = self.piece_of(triangle_of(half_edge));
+        let corners = [
+            self.start(half_edge),
+            self.end(half_edge),
+            self.start(previous(half_edge)),
+        ];
+        let [own, b, c] = corners.map(|v| self.vertices[v as usize].place);
+        let place = own + step * (0.5 * (b + c) - own);
+        let moved = match piece {
+            Piece::Ball { .. } | Piece::Lid { .. } | Piece::Slope { .. } => piece.spot_near(place),
+            _ => {
+                let spots = corners.map(|v| &self.vertices[v as usize].spot);
+                let facet = Facet::new(piece, spots, About::Points);
+                let mut at = facet.at([1.0 - step, 0.5 * step, 0.5 * step]);
+                for (axis, period) in piece.periods().into_iter().enumerate() {
+                    if period > 0.0 {
+                        at[axis] = at[axis].rem_euclid(1.0);
+                    }
+                }
+                Spot::inside(at.extend(0.0))
+            }
+        };
+        Some(moved)
+    }
+
+    fn move_if_better(&mut self, vertex: u32, spot: Spot, star: &[u32], now: f64) {
+        let v = vertex as usize;
+        let sights = self.task.sights.len();
+        let own = v * sights..(v + 1) * sights;
+        let old = (
+            self.vertices[v],
+            self.seen[own.clone()].to_vec(),
+            self.normals[own.clone()].to_vec(),
+        );
+        let (mut moved, seen, normals) = self.task.look_at(spot, self.of[triangle_of(star[0])]);
+        moved.out = self.vertices[v].out;
+        self.vertices[v] = moved;
+        self.seen[own.clone()].copy_from_slice(&seen);
+        self.normals[own.clone()].copy_from_slice(&normals);
+        let mut estimates = vec![];
+        let is_better = star.iter().all(|&e| {
+            let triangle = triangle_of(e);
+            let (corners, of) = (self.triangles[triangle], self.of[triangle]);
+            if !self.is_sound(corners, of) {
+                return false;
+            }
+            let estimate = self.assess(corners, of, self.rims_of(triangle));
+            estimates.push((triangle, estimate));
+            estimate.whole < BETTER * now
+        });
+        if is_better {
+            for (triangle, estimate) in estimates {
+                self.estimates[triangle] = estimate;
+            }
+        } else {
+            self.vertices[v] = old.0;
+            self.seen[own.clone()].copy_from_slice(&old.1);
+            self.normals[own].copy_from_slice(&old.2);
+        }
+    }
+}
+
+/// What decides whether a vertex may be moved or taken away.
+struct Vertices {
+    out: u32,
+    spot: Spot,
+}
