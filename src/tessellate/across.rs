@@ -32,11 +32,12 @@
 //!
 //! Angles are acute where the facet is *upright*: where no normal of its plane's photosurface, at any place, is more
 //! than 35 degrees from the facet's own (for a plane that holds the motion all of them are the same). The normal of an
-//! output triangle is `N` with the gradient of its interpolated distance in place of `q`, so this holds for it as well. Elsewhere every
-//! output triangle is examined: the normals on it are within 32 degrees of its own, and those along the ray within 45
-//! degrees of the first. An output triangle for which this does not hold counts with its gap, and so do triangles whose
-//! own facet has no certain normal: for them `f` is the identity, and between the two kinds it changes along the ray,
-//! whose every place is within the larger one of both bounds.
+//! output triangle is `N` with the gradient of its interpolated distance in place of `q`, so this holds for it as well.
+//! Elsewhere every output triangle is examined: the normals on it are within 32 degrees of its own, and those along the
+//! ray within 45 degrees of the first. An output triangle for which this does not hold counts with its gap, and so do
+//! triangles whose own facet has no certain normal: for them `f` is the identity, and between the two kinds it changes
+//! along the ray, whose every place is within the larger one of both bounds. A ray that would pass such a triangle ends at
+//! the first of its sides: that side is a rim (`Judge::cut`).
 //!
 //! If the plane holds the motion, `C` is flat. All bounds are continuous in the plane's direction, so they hold there as
 //! well.
@@ -66,7 +67,7 @@ const UNCERTAIN: f64 = 1e-6;
 const UP: f64 = 1.0 + 64.0 * EPSILON;
 
 /// A flat facet at rest.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Facet {
     motion: Motion,
     /// Unit normal.
@@ -135,6 +136,31 @@ impl Facet {
     /// The share of a gap at this offset from the observer: not rounded up.
     pub(super) fn share(&self, offset: DVec3) -> f64 {
         self.motion.share(self.normal, offset.normalize_or_zero())
+    }
+
+    /// Whether triangles on a piece of an edge between these offsets, with this gap, will hardly count with their gaps: on
+    /// the piece the normals of the photosurface turn little, and so they do along a ray.
+    pub(super) fn is_plain(&self, offsets: &[DVec3], gap: f64) -> bool {
+        /// Sine of the angle by which normals may turn along an edge: half of what they may within a triangle.
+        const TURN: f64 = 0.15;
+        if self.is_upright {
+            return true;
+        }
+        let normals = offsets.iter().map(|offset| {
+            self.motion
+                .seen_normal(self.normal, offset.normalize_or_zero())
+        });
+        let mut first: Option<DVec3> = None;
+        let reach = 2.0 * self.motion.gamma_beta * gap;
+        normals.zip(offsets).all(|(normal, offset)| {
+            let length = normal.length();
+            let from = *first.get_or_insert(normal);
+            let turns = normal.cross(from).length() > TURN * length * from.length();
+            // As `is_steady`, with room.
+            let is_steady =
+                self.motion.gamma_beta * reach <= 0.5 * STEADY * length * length * offset.length();
+            !turns && normal.dot(from) > 0.0 && is_steady
+        })
     }
 
     /// About how far a ray of this length, as a gap, leads in the rest frame.

@@ -180,6 +180,22 @@ impl Adjacency {
         FEW * IN_PLANE * sizes.fold(0.0, |size: f64, place| size.max(place.length()))
     }
 
+    /// Lets some triangles in the list `looked` count with their gaps from now on.
+    pub(super) fn count_with_gaps(&mut self, numbers: &[usize]) {
+        for &number in numbers {
+            self.facets[number] = None;
+        }
+        for edge in self.edges.iter_mut().filter(|edge| edge.is_free) {
+            let mut facets = edge.members.iter();
+            if facets.any(|member| self.facets[member.looked as usize].is_none()) {
+                edge.is_free = false;
+                for member in &edge.members {
+                    self.looked[member.looked as usize].is_free[member.side as usize] = false;
+                }
+            }
+        }
+    }
+
     /// The facet of a triangle in the list `looked`, as the surface measure needs it.
     pub(super) fn facet(&self, number: usize) -> Option<Facet> {
         self.facets.get(number).copied().flatten()

@@ -22,8 +22,8 @@ const RIM_SHARE_ALONE: f64 = 0.9;
 /// Under the surface measure: the same as [`EDGE_SHARE`] for an edge that is no rim, of what [`RIM_SHARE`] leaves.
 const FREE_SHARE: f64 = EDGE_SHARE * (1.0 - RIM_SHARE);
 
-/// An edge whose facets need few pieces, and count with their gaps, stays whole up to this multiple of its allowed gap. Divided edges on all sides
-/// of a triangle that is hardly too large would make four of it where two suffice.
+/// An edge whose facets need few pieces, and count with their gaps, stays whole up to this multiple of its allowed gap.
+/// Divided edges on all sides of a triangle that is hardly too large would make four of it where two suffice.
 pub(super) const SPARED: f64 = 0.95 / EDGE_SHARE;
 
 /// Number of pieces of the quadrature along an edge. The result is checked, so more digits are not needed.
@@ -60,7 +60,10 @@ impl EdgeRule<'_> {
                 }
                 false => rim_share(facet) / rim_gap_share(motion, offsets, along),
             };
-            share.max(EDGE_SHARE)
+            match share > EDGE_SHARE && facet.is_plain(offsets, allowed * share / EDGE_SHARE) {
+                true => share,
+                false => EDGE_SHARE,
+            }
         };
         let shares = self.facets.iter().map(of_facet);
         allowed * shares.reduce(f64::min).unwrap_or(EDGE_SHARE)

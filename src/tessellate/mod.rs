@@ -30,6 +30,7 @@ mod gap;
 mod minimum;
 mod motion;
 mod nearest;
+mod outcomes;
 mod outline;
 mod pieces;
 mod predicted;

@@ -19,7 +19,7 @@ use crate::spacetime::Velocity;
 const EPSILON: f64 = f64::EPSILON;
 
 /// The observer's motion in the rest frame of an object.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Motion {
     /// Unit vector.
     pub(super) direction: DVec3,

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// A point on the boundary of the source triangle.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Corner {
     /// Weights of the source triangle's corners.
     pub(super) weights: DVec3,

@@ -5,11 +5,9 @@ use rayon::prelude::*;
 
 use super::adjacency::Adjacency;
 use super::edge::{EDGE_SHARE, fewest_pieces, point_between, rim_gap_share};
-use super::edges::{Edges, LARGEST, Origin, canonical, sides};
-use super::outline::{Divided, Need, Outline};
-use super::pieces::{Corner, Pieces};
-use super::room::Room;
-use super::sky::{Grant, divide};
+use super::edges::{Edges, LARGEST, Origin};
+use super::outcomes::{Made, Outcome, make};
+use super::outline::Need;
 use super::survey::{Survey, survey};
 use super::{Allowance, Motion, edge_gap, minimum_triangles};
 use crate::mesh::Mesh;
@@ -62,54 +60,18 @@ pub(crate) fn refine(
         .par_iter()
         .map(|mesh| survey(mesh, observer, small, whole, motion))
         .collect();
-    let adjacency = Adjacency::new(meshes, &found, observer, motion, small_edge);
-    let measure = (allowance, motion);
-    let mut outline = Outline::within(meshes, &adjacency, observer, measure, most_more);
+    let mut adjacency = Adjacency::new(meshes, &found, observer, motion, small_edge);
     let off_plane = motion.map_or(0.0, |motion| motion.as_gap(adjacency.off_plane(meshes)));
     let sources = with_sides(meshes, &adjacency, observer, whole, motion);
-    let divided: Vec<Divided> = outline.divided(&found);
-    let weights = divided.iter().map(|divided| divided.need.inside);
-    let mut room = Room::new(weights.collect(), outline.more / 2);
-    let mut outcomes: Vec<Option<Outcome>> = divided.iter().map(|_| None).collect();
-    loop {
-        let turn = room.turn();
-        if turn.is_empty() {
-            break;
-        }
-        let is_last = room.is_last_turn();
-        let made: Vec<Outcome> = turn
-            .par_iter()
-            .map(|&(number, granted)| {
-                let Divided {
-                    mesh,
-                    index,
-                    need,
-                    number,
-                } = divided[number];
-                let corners = meshes[mesh].triangles()[index as usize];
-                let (positions, edges) = (meshes[mesh].positions(), &outline.edges[mesh]);
-                let (boundary, points) = boundary(corners, positions, observer, edges);
-                let pieces = divide(
-                    corners.map(|corner| positions[corner as usize]),
-                    observer,
-                    &points,
-                    (&outline.allowance, outline.rims.judge(number)),
-                    need.max_points(points.len()),
-                    Grant { granted, is_last },
-                );
-                Outcome { boundary, pieces }
-            })
-            .collect();
-        for ((number, _), outcome) in turn.into_iter().zip(made) {
-            room.used(number, outcome.pieces.inside.len(), outcome.pieces.is_short);
-            outcomes[number] = Some(outcome);
-        }
-    }
+    let Made { outline, outcomes } = make(
+        meshes,
+        &mut adjacency,
+        &found,
+        observer,
+        (allowance, motion),
+        most_more,
+    );
 
-    let mut outcomes: Vec<Outcome> = outcomes.into_iter().flatten().collect();
-    if motion.is_some() {
-        spread_cuts(&mut outline, &mut outcomes);
-    }
     let mut outcomes = outcomes.into_iter();
     let (looser, needs) = (outline.looser, outline.needs);
     let parts = found.into_iter().zip(outline.edges).zip(needs).zip(sources);
@@ -140,13 +102,6 @@ pub(crate) fn refine(
         .collect()
 }
 
-/// A divided triangle.
-struct Outcome {
-    /// Indices of the vertices on the boundary, counter-clockwise from the first corner on.
-    boundary: Vec<u32>,
-    pieces: Pieces,
-}
-
 /// How many triangles more than [`Survey::minimum_with_source`] says each mesh needs because the sides of its triangles
 /// have to be divided: a polygon with `b` points on its boundary has at least `b - 2` triangles.
 fn with_sides(
@@ -174,6 +129,9 @@ fn with_sides(
             fewest_pieces(from, to, edge_gap(from, to), &allowed)
         });
         let fewest = pieces.sum::<f64>() - 2.0;
+        if fewest <= 1.0 {
+            return 0.0;
+        }
         let counted = minimum_triangles(offsets, whole, motion).max(1.0);
         (fewest - counted).max(0.0)
     });
@@ -182,79 +140,6 @@ fn with_sides(
     of_meshes
         .map(|ends| more[ends[0]..ends[1]].iter().sum())
         .collect()
-}
-
-/// Adds to the bounds of the surface measure what it costs that rays must not pass some output triangles of the same
-/// plane.
-fn spread_cuts(outline: &mut Outline, outcomes: &mut [Outcome]) {
-    let regions = &outline.rims.regions;
-    let mut of_regions = vec![0.0f64; regions.len()];
-    let mut of_divided = outcomes.iter();
-    for (need, &region) in outline.needs.iter().flatten().zip(regions) {
-        let cut = match need.is_divided {
-            true => of_divided.next().map_or(0.0, |outcome| outcome.pieces.cut),
-            false => need.cut,
-        };
-        let of_region = &mut of_regions[region as usize];
-        *of_region = of_region.max(cut);
-    }
-    let mut of_divided = outcomes.iter_mut();
-    for (need, &region) in outline.needs.iter_mut().flatten().zip(regions) {
-        let cut = of_regions[region as usize];
-        need.surface = (need.surface + cut).min(need.gap);
-        if need.is_divided
-            && let Some(outcome) = of_divided.next()
-        {
-            outcome.pieces.surface += cut;
-        }
-    }
-}
-
-/// The boundary of a triangle, counter-clockwise from the first corner on: the vertices' indices, and the vertices as
-/// [`Corner`]s.
-fn boundary(
-    corners: [u32; 3],
-    positions: &[DVec3],
-    observer: DVec3,
-    edges: &Edges,
-) -> (Vec<u32>, Vec<Corner>) {
-    let corner_positions = corners.map(|corner| positions[corner as usize]);
-    let mut boundary = vec![];
-    let mut points = vec![];
-    for (number, side) in sides(corners).into_iter().enumerate() {
-        let (from, to) = (number, (number + 1) % 3);
-        let at = |weights: DVec3, position: DVec3, sides: u8| Corner {
-            weights,
-            offset: position - observer,
-            sides,
-        };
-        let unit =
-            |corner: usize| DVec3::from_array([0, 1, 2].map(|i| f64::from(u8::from(i == corner))));
-        boundary.push(side[0]);
-        points.push(at(
-            unit(from),
-            corner_positions[from],
-            1 << number | 1 << ((number + 2) % 3),
-        ));
-        let key = canonical(side, positions);
-        let Some((parameters, first)) = edges.divisions.get(&key) else {
-            continue;
-        };
-        let [p, q] = key.map(|vertex| positions[vertex as usize]);
-        let forward = key == side;
-        let mut order: Vec<usize> = (0..parameters.len()).collect();
-        if !forward {
-            order.reverse();
-        }
-        for index in order {
-            let parameter = parameters[index];
-            let from_weight = if forward { 1.0 - parameter } else { parameter };
-            let weights = unit(from) * from_weight + unit(to) * (1.0 - from_weight);
-            boundary.push(first + index as u32);
-            points.push(at(weights, point_between(p, q, parameter), 1 << number));
-        }
-    }
-    (boundary, points)
 }
 
 /// Assembles a mesh from the outcomes of the triangles in `looked_at` and from all its other triangles, in the order of
@@ -283,14 +168,20 @@ fn assemble(
         } else {
             None
         };
-        let Some(Outcome { boundary, pieces }) = outcome else {
+        let Some(Outcome {
+            boundary,
+            pieces,
+            surface,
+            ..
+        }) = outcome
+        else {
             refined.gap = refined.gap.max(need.gap);
             refined.surface_gap = refined.surface_gap.max(need.surface);
             triangles.push(corners);
             continue;
         };
         refined.gap = refined.gap.max(pieces.gap);
-        refined.surface_gap = refined.surface_gap.max(pieces.surface.min(pieces.gap));
+        refined.surface_gap = refined.surface_gap.max(surface);
         refined.complete &= pieces.complete;
         let first = (positions.len() + origins.len()) as u32;
         let index = |local: u32| match boundary.get(local as usize) {

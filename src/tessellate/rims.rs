@@ -17,7 +17,7 @@ const MIN_SHARE: f64 = 1e-3;
 const MIN_LEFT: f64 = 0.05;
 
 /// The facet of a triangle with its rims: judges how far output triangles are from the photosurface.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Judge {
     facet: Facet,
     /// For each side the largest rim cost of all rims that a ray across this side may reach, as a gap.

@@ -35,7 +35,8 @@ pub(crate) struct Survey {
 }
 
 /// Surveys a mesh: which triangles may have gaps above `limit`, and how many triangles are needed to keep all gaps
-/// within `allowance`; of points, or, where a motion is given, of surfaces. The mesh, the position `observer` and the gaps are in the rest frame.
+/// within `allowance`; of points, or, where a motion is given, of surfaces. The mesh, the position `observer` and the
+/// gaps are in the rest frame.
 ///
 /// The result is the same for any number of threads. The gap of a triangle is the smaller one of [`triangle_gap`] and
 /// its cheap bound, and the result is the largest of all. A triangle is skipped only if its cheap bound is not above a
