@@ -4,6 +4,7 @@ use anyhow::{Context, bail};
 use clap::Args;
 use photosurface::jobs::{DEFAULT_MAX_TRIANGLES, Fitted, Tally, levels_of_detail};
 use photosurface::pipeline::Prediction;
+use photosurface::scene::Measure;
 use photosurface::tessellate::Precision;
 use photosurface::write::Format;
 use photosurface::{PlacedScene, Scene, SurfaceOptions, Tolerance};
@@ -24,6 +25,11 @@ pub(super) struct AccuracyArgs {
     /// scene units) or deg:0.02 (an angle seen by the observer, in degrees) [default: 1e-3]
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<Tolerance>,
+    /// Which distance the tolerance limits: points, between where each point is drawn and where it is seen; or surface,
+    /// between the mesh and the photosurface as surfaces, which takes fewer triangles and is enough for shape alone
+    /// [default: points for objects with a texture, a checker, colours, attributes or effects, else surface]
+    #[arg(long, value_name = "points|surface")]
+    measure: Option<Measure>,
     /// Add no vertices; the certificate still bounds the distance from the true photosurface. A round shape without a
     /// resolution has that of its kind, which may be finer than the tolerance needs
     #[arg(long)]
@@ -67,18 +73,23 @@ impl DetailArgs {
 }
 
 impl AccuracyArgs {
-    /// The scene with the tolerance that the flag says.
+    /// The scene with the tolerance and the measure that the flags say.
     pub(super) fn scene(&self, scene: Scene) -> Scene {
-        match self.tolerance {
+        let scene = match self.tolerance {
             Some(tolerance) => scene.with_tolerance_for_all(tolerance),
+            None => scene,
+        };
+        match self.measure {
+            Some(measure) => scene.with_measure_for_all(measure),
             None => scene,
         }
     }
 
     /// Which of the flags are there.
-    pub(super) fn given(&self) -> [Given; 3] {
+    pub(super) fn given(&self) -> [Given; 4] {
         [
             ("--tolerance", self.tolerance.is_some()),
+            ("--measure", self.measure.is_some()),
             ("--no-subdivide", self.no_subdivide),
             ("--max-triangles", self.max_triangles.is_some()),
         ]
@@ -217,14 +228,15 @@ fn all_certified(made: &Tally, verbosity: Verbosity) -> bool {
     let certificate = &worst.certificate;
     verbosity.note(format_args!(
         "{} of {} photosurfaces are not within their tolerance; the worst is \"{}\", with a proven bound of {:.3e} for a \
-         tolerance of {:.3e} ({}: gap {:.3e}, curvature {:.3e}, rounding {:.3e}){}",
+         tolerance of {:.3e} ({}, {}: gap {:.3e}, curvature {:.3e}, rounding {:.3e}){}",
         made.uncertified,
         made.photosurfaces,
         worst.name,
         certificate.total,
         certificate.tolerance,
         certificate.unit,
-        certificate.gap,
+        certificate.measure,
+        certificate.measured_gap(),
         certificate.curvature,
         certificate.rounding,
         match certificate.tolerance {

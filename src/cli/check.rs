@@ -22,10 +22,11 @@ use super::wording::or_ply;
 /// Validate a scene or a mesh, and predict the export
 ///
 /// Reads everything that an export would read, and writes nothing. For each object it prints: the number of parts; the
-/// highest speed relative to the observer; the triangles before refinement and, predicted, after it, summed over all steps;
-/// and whether every photosurface will be certified. Then the models, effects and lamps that the scene calls for, and about how long each effect
-/// will take, as measured on a small sample: for the vertices of the export, and for a picture of the default size all of
-/// whose rays meet surfaces. Last, the middle and the size of the box around each object at rest, and of the
+/// highest speed relative to the observer; the tolerance and the distance that it limits (--measure); the triangles
+/// before refinement and, predicted, after it, summed over all steps; and whether every photosurface will be certified.
+/// Then the models, effects and lamps that the scene calls for, and about how long each effect will take, as measured on a
+/// small sample: for the vertices of the export, and for a picture of the default size all of whose rays meet surfaces.
+/// Last, the middle and the size of the box around each object at rest, and of the
 /// box around the places where its vertices are seen at all steps, in the observer's frame. An export with --animate=morph is not predicted: it has the triangles
 /// of all steps in one mesh.
 /// Exit status: 0 if the export will end with 0; 1 if it will end with 1 (not certified), or if the steps do not fit into one
@@ -123,26 +124,28 @@ fn tell_level(
 ) -> anyhow::Result<()> {
     writeln!(
         out,
-        "{:<20} {:>6} {:>12} {:>13} {:>10} {:>12} {:>16} {:>9}",
+        "{:<20} {:>6} {:>12} {:>13} {:>10} {:>12} {:>8} {:>16} {:>9}",
         "object",
         "parts",
         "triangles in",
         "gamma",
         "rapidity",
         "tolerance",
+        "measure",
         "triangles out",
         "certified"
     )?;
     for (object, prediction) in objects.iter().zip(&level.objects) {
         writeln!(
             out,
-            "{:<20} {:>6} {:>12} {:>13.6e} {:>10.6} {:>12} {:>16} {:>9}",
+            "{:<20} {:>6} {:>12} {:>13.6e} {:>10.6} {:>12} {:>8} {:>16} {:>9}",
             shown(&object.name),
             object.parts,
             grouped_number(prediction.triangles_in),
             object.relative_gamma,
             object.relative_rapidity,
             prediction.tolerance,
+            object.measure.name(),
             format!("about {}", grouped_number(prediction.triangles)),
             if prediction.certified { "yes" } else { "no" },
         )?;

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use anyhow::{anyhow, ensure};
 use photosurface::jobs::{Aim, CameraSettings, FieldOfView, FramingError, with_suffix};
 use photosurface::render::{CameraError, PictureSize};
+use photosurface::scene::Measure;
 use photosurface::study::{IntegratorSettings, IntegratorStudy, Made, RaySettings, StudyError};
 use photosurface::{CostSettings, CostStudy, DVec3, PlacedScene, Tolerance};
 
@@ -93,6 +94,9 @@ struct MeshArgs {
     /// angles in degrees (deg:0.02), all of one kind [default: 1e-1,1e-2,1e-3,1e-4,1e-5,1e-6]
     #[arg(long, value_name = "T,T,...", value_delimiter = ',', value_parser = tolerance, allow_hyphen_values = true)]
     tolerances: Vec<Tolerance>,
+    /// Which distance tolerances limit: points or surface, as in export [default: that of the scene]
+    #[arg(long, value_name = "points|surface")]
+    measure: Option<Measure>,
     /// Tolerances that need more triangles than this, summed over all photosurfaces, are only predicted [default: 3000000]
     #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
     max_triangles: Option<u64>,
@@ -146,6 +150,9 @@ pub(super) fn run(args: &CostArgs) -> anyhow::Result<()> {
     let tables = tables(output.csv.as_ref(), only);
     let mut input = Input::read(&args.input, &args.observer, verbosity)?;
     input.scene = args.model.scene(input.scene);
+    if let Some(measure) = args.meshes.measure {
+        input.scene = input.scene.with_measure_for_all(measure);
+    }
     let files = [&output.json, &output.plot].into_iter().flatten();
     let files = files.chain(tables.iter().map(|(path, _)| path));
     check_destinations(files.cloned(), &input.files)?;
@@ -265,8 +272,9 @@ impl CostArgs {
 }
 
 impl MeshArgs {
-    fn given(&self) -> [Given; 3] {
+    fn given(&self) -> [Given; 4] {
         [
+            ("--measure", self.measure.is_some()),
             ("--tolerances", !self.tolerances.is_empty()),
             ("--max-triangles", self.max_triangles.is_some()),
             ("--places", self.places.is_some()),

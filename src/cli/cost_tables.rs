@@ -127,7 +127,7 @@ fn mesh_cells(cost: &MeshCost) -> [String; MESH_HEADINGS.len()] {
         return cells;
     };
     cells[2] = grouped(made.triangles);
-    cells[3] = grouped_number(made.minimum_triangles);
+    cells[3] = grouped_number(made.minimum_with_source);
     cells[4] = format!("{:.2}", made.ratio);
     cells[5] = grouped_number(made.uniform.triangles);
     cells[6] = format!("{:.2e}", made.bound);
@@ -199,13 +199,14 @@ fn error(error: f64, uncertainty: f64) -> String {
 }
 
 /// Columns of the CSV of meshes, and where their numbers stand in the JSON of a tolerance.
-const MESH_COLUMNS: [(&str, &str); 22] = [
+const MESH_COLUMNS: [(&str, &str); 23] = [
     ("tolerance", "/tolerance"),
     ("predicted_triangles", "/predicted_triangles"),
     ("reachable", "/reachable"),
     ("triangles", "/made/triangles"),
     ("triangles_in", "/made/triangles_in"),
     ("minimum_triangles", "/made/minimum_triangles"),
+    ("minimum_with_source", "/made/minimum_with_source"),
     ("ratio", "/made/ratio"),
     ("file_bytes", "/made/file_bytes"),
     ("predict_seconds", "/made/seconds/predict"),

@@ -7,6 +7,7 @@ use super::EffectCost;
 use super::budget::Fitted;
 use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
 use crate::pipeline::{Bounds, PlacedScene, PlacedSceneError};
+use crate::scene::Measure;
 use crate::spacetime::ViewModel;
 use crate::write::{Provenance, schema_of};
 
@@ -39,6 +40,8 @@ pub struct CheckedObject {
     pub name: String,
     /// Which effects of special relativity it is shown with.
     pub model: ViewModel,
+    /// Which distance its tolerance limits.
+    pub measure: Measure,
     /// How many parts it has.
     pub parts: usize,
     /// Number of vertices at rest; a flat shape without a resolution has its coarsest form.
@@ -149,6 +152,7 @@ impl CheckedObject {
                 Self {
                     name: object.name.clone(),
                     model: object.view_model(),
+                    measure: placed.measure(object, parts),
                     parts: parts.len(),
                     vertices: meshes().map(|mesh| mesh.vertex_count()).sum(),
                     relative_gamma: relative.gamma(),

@@ -12,6 +12,8 @@ use crate::tessellate::{Bounds, Certificate, Counts, survey};
 pub(super) struct Measured {
     /// The largest gap `e`, a length in the rest frame before the factor `gamma beta`.
     pub(super) gap: f64,
+    /// A bound on the same as surfaces, as a gap.
+    pub(super) surface_gap: f64,
     pub(super) counts: Counts,
 }
 
@@ -19,13 +21,21 @@ impl Measured {
     /// The measures of a mesh at rest that stays as it is.
     pub(super) fn of_unrefined(tolerance: &StepTolerance, limits: &Limits, mesh: &Mesh) -> Self {
         let observer = tolerance.view.observer_rest();
-        let found = survey(mesh, observer, f64::INFINITY, &limits.whole);
+        let found = survey(
+            mesh,
+            observer,
+            f64::INFINITY,
+            &limits.whole,
+            tolerance.motion().as_ref(),
+        );
         Self {
             gap: found.gap,
+            surface_gap: f64::INFINITY,
             counts: Counts {
                 triangles_in: mesh.triangle_count(),
                 triangles_out: mesh.triangle_count(),
                 minimum_triangles: found.minimum_triangles,
+                minimum_with_source: found.minimum_with_source,
             },
         }
     }
@@ -42,48 +52,60 @@ pub(super) fn certificate(
     around: Option<(DVec3, DVec3)>,
     measured: Measured,
 ) -> Certificate {
-    let Measured { gap, mut counts } = measured;
+    let Measured {
+        gap,
+        surface_gap,
+        mut counts,
+    } = measured;
     if let Some(least) = tolerance.least_of_round(seen.extremes.nearest) {
         counts.minimum_triangles = least;
+        counts.minimum_with_source = least;
     }
     let gamma_beta = tolerance.view.relative_velocity().gamma_beta();
+    let gap = gamma_beta * gap * (1.0 + 4.0 * f64::EPSILON);
     let bounds = Bounds {
-        gap: gamma_beta * gap * (1.0 + 4.0 * f64::EPSILON),
+        gap,
+        // No surface is farther from another than its points are from their places.
+        surface_gap: (gamma_beta * surface_gap * (1.0 + 4.0 * f64::EPSILON)).min(gap),
         deviation: tolerance.deviation,
         curvature: limits.curvature,
         rounding: tolerance.rounding(mesh, &seen.extremes, around, 0.0),
     };
+    let measure = tolerance.measure;
     match (tolerance.tolerance.unit(), tolerance.tolerance.number()) {
         (Unit::Degrees, degrees) => {
-            Certificate::of_angles(degrees, &tolerance.view, mesh, bounds, counts)
+            Certificate::of_angles(degrees, measure, &tolerance.view, mesh, bounds, counts)
         }
-        _ => Certificate::of_lengths(tolerance.length, bounds, counts),
+        _ => Certificate::of_lengths(tolerance.length, measure, bounds, counts),
     }
 }
 
-/// The certificate of a round shape with vertices on the exact surface: `bounds` holds for each triangle that on its
-/// distance from the photosurface, a length in the observer's frame.
+/// The certificate of a round shape with vertices on the exact surface: each triangle has two bounds on its distance from the
+/// photosurface, as surfaces and between points, lengths in the observer's frame.
 pub(super) fn of_curved(
     tolerance: &StepTolerance,
     mesh: &Mesh,
     seen: &MappedMesh,
     around: Option<(DVec3, DVec3)>,
-    bounds: &[f64],
+    bounds: &[[f64; 2]],
     counts: Counts,
 ) -> Certificate {
     let rounding = tolerance.rounding(mesh, &seen.extremes, around, 0.0);
+    let measure = tolerance.measure;
     match (tolerance.tolerance.unit(), tolerance.tolerance.number()) {
         (Unit::Degrees, degrees) => {
-            Certificate::of_seen_angles(degrees, &seen.mesh, bounds, rounding, counts)
+            Certificate::of_seen_angles(degrees, measure, &seen.mesh, bounds, rounding, counts)
         }
         _ => {
+            let largest = |k: usize| bounds.iter().map(|of| of[k]).fold(0.0, f64::max);
             let bounds = Bounds {
-                gap: bounds.iter().copied().fold(0.0, f64::max),
+                gap: largest(1),
+                surface_gap: largest(0),
                 deviation: 0.0,
                 curvature: 0.0,
                 rounding,
             };
-            Certificate::of_lengths(tolerance.length, bounds, counts)
+            Certificate::of_lengths(tolerance.length, measure, bounds, counts)
         }
     }
 }

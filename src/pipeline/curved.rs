@@ -14,20 +14,20 @@ use super::plan::Plan;
 use super::predicting::Predicted;
 use crate::material::Part;
 use crate::mesh::Mesh;
-use crate::tessellate::{About, Allowed, Counts, Sight, needed, triangulate};
+use crate::tessellate::{Allowed, Counts, Sight, needed, triangulate};
 
 /// Carries out the plan of a round shape; `None` if not every triangle could be proven.
 pub(super) fn make_curved<'a>(plan: &Plan<'a>) -> Option<Surface<'a>> {
     let shaped = plan.placed_object.curved()?;
     let (name, placed) = &plan.placed_object.parts[0];
-    let about = about(placed);
+    let about = plan.tolerance.about();
     let sight = sight_of(plan, shaped);
     let most = plan.max_triangles(plan.granted);
     let made = triangulate(&shaped.shape, std::slice::from_ref(&sight), about, most)?;
     let part = shaped.part_of(made.mesh, placed);
     let seen = MappedMesh::new(plan.view(), part.mesh());
     let around = plan.tolerance.box_around([&seen]);
-    let counts = counts_of(shaped, &sight, about, part.mesh().triangle_count());
+    let counts = counts_of(shaped, &plan.tolerance, &seen);
     let certificate = of_curved(
         &plan.tolerance,
         part.mesh(),
@@ -53,7 +53,7 @@ pub(super) fn make_curved_together<'a>(
 ) -> Option<Vec<Surface<'a>>> {
     let shaped = placed_object.curved()?;
     let (name, placed) = &placed_object.parts[0];
-    let about = about(placed);
+    let about = plans.first()?.tolerance.about();
     let most = placed_object
         .source_triangles
         .saturating_add(placed_object.granted_together());
@@ -89,9 +89,9 @@ pub(super) fn make_curved_together<'a>(
     let part = shaped.part_of(made.mesh, placed);
     let after = shown(plans, &part);
     let around = set_box(plans, &after);
-    let steps = plans.iter().zip(after).zip(sights.iter().zip(&made.bounds));
-    let surfaces = steps.map(|((plan, (stand_in, seen)), (sight, bounds))| {
-        let counts = counts_of(shaped, sight, about, stand_in.mesh().triangle_count());
+    let steps = plans.iter().zip(after).zip(&made.bounds);
+    let surfaces = steps.map(|((plan, (stand_in, seen)), bounds)| {
+        let counts = counts_of(shaped, &plan.tolerance, &seen);
         Surface {
             name: name.clone(),
             certificate: of_curved(
@@ -114,7 +114,7 @@ pub(super) fn make_curved_together<'a>(
 pub(super) fn predict_curved(plan: &Plan<'_>) -> Option<Predicted> {
     let shaped = plan.placed_object.curved().filter(|_| plan.is_curved)?;
     let sight = sight_of(plan, shaped);
-    let needed = needed(&shaped.shape, &sight, about(&plan.placed_object.parts[0].1));
+    let needed = needed(&shaped.shape, &sight, plan.tolerance.about());
     let before = shaped.shape.coarsest_curved() as f64;
     let placed = plan.placed_object.parts[0].1.mesh();
     Some(Predicted {
@@ -122,18 +122,6 @@ pub(super) fn predict_curved(plan: &Plan<'_>) -> Option<Predicted> {
         before,
         reachable: is_reachable(&plan.tolerance, &sight, placed),
     })
-}
-
-/// A picture shows where places are, and so do colours; otherwise only the surface is seen.
-fn about(part: &Part) -> About {
-    let has_picture = part
-        .material
-        .as_ref()
-        .is_some_and(|material| material.base_color_texture().is_some());
-    match has_picture {
-        true => About::Points,
-        false => About::Surface,
-    }
 }
 
 /// How the observer sees the shape, with the distance that rounding leaves of the tolerance aimed at.
@@ -152,11 +140,15 @@ fn sight_of(plan: &Plan<'_>, shaped: &Shaped) -> Sight {
     )
 }
 
-fn counts_of(shaped: &Shaped, sight: &Sight, about: About, triangles_out: usize) -> Counts {
+/// The numbers of triangles, the fewest for the tolerance of the scene.
+fn counts_of(shaped: &Shaped, tolerance: &StepTolerance, seen: &MappedMesh) -> Counts {
+    let least = tolerance.least_of_round(seen.extremes.nearest);
+    let least = least.unwrap_or_default();
     Counts {
         triangles_in: shaped.shape.coarsest_curved(),
-        triangles_out,
-        minimum_triangles: needed(&shaped.shape, sight, about).least,
+        triangles_out: seen.mesh.triangle_count(),
+        minimum_triangles: least,
+        minimum_with_source: least,
     }
 }
 

@@ -12,11 +12,11 @@ use super::placed_object::PlacedObject;
 use crate::light_cone::{Extremes, View};
 use crate::material::Part;
 use crate::mesh::Mesh;
-use crate::scene::{Tolerance, Unit};
+use crate::scene::{Measure, Tolerance, Unit};
 use crate::shape::Shape;
 use crate::spacetime::length;
 use crate::tessellate::{
-    About, Allowance, Allowed, Precision, Sight, Singles, largest_gap, largest_stretch,
+    About, Allowance, Allowed, Motion, Precision, Sight, Singles, largest_gap, largest_stretch,
     local_stretch, nearest_point, needed, rounding_bound,
 };
 
@@ -56,6 +56,8 @@ pub(super) struct StepTolerance {
     pub(super) view: View,
     /// The tolerance of the scene: certificates are about it.
     pub(super) tolerance: Tolerance,
+    /// Which distance the tolerance limits.
+    pub(super) measure: Measure,
     /// The same as a length in the observer's frame; an angle at the nearest vertex.
     pub(super) length: f64,
     /// The tolerance that refinement aims at: that of the scene, or a looser one where triangles are limited.
@@ -97,7 +99,7 @@ impl StepTolerance {
     pub(super) fn new(
         placed_object: &PlacedObject,
         view: View,
-        tolerance: Tolerance,
+        (tolerance, measure): (Tolerance, Measure),
         precision: Precision,
         seen: &[Extremes],
     ) -> Self {
@@ -106,6 +108,7 @@ impl StepTolerance {
         Self {
             view,
             tolerance,
+            measure,
             length: length_of(tolerance, seen),
             aimed,
             aimed_length: length_of(aimed, seen),
@@ -118,6 +121,22 @@ impl StepTolerance {
                 .map(|shaped| (shaped.shape.clone(), shaped.to_frame())),
             box_of_all_steps: None,
         }
+    }
+
+    /// What the measure asks of the triangles of a round shape.
+    pub(super) fn about(&self) -> About {
+        match self.measure {
+            Measure::Points => About::Points,
+            Measure::Surface => About::Surface,
+        }
+    }
+
+    /// The observer's motion, where the tolerance limits the distance of flat facets as surfaces.
+    pub(super) fn motion(&self) -> Option<Motion> {
+        let velocity = self.view.relative_velocity();
+        let is_of_surface =
+            self.measure == Measure::Surface && self.exact.is_none() && velocity.rapidity() > 0.0;
+        is_of_surface.then(|| Motion::new(velocity))
     }
 
     /// The fewest triangles by theory for the tolerance of the scene, with corners on the true surface of a round shape
@@ -139,7 +158,7 @@ impl StepTolerance {
             _ => Allowed::Length(self.length),
         };
         let sight = Sight::new(&self.view.relative_velocity(), to_offset, allowed);
-        Some(needed(shape, &sight, About::Surface).least)
+        Some(needed(shape, &sight, self.about()).least)
     }
 
     /// The limits of these parts, each of whose facets stands for `each` smaller ones.

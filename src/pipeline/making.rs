@@ -93,7 +93,14 @@ pub(super) fn refine_parts(
     let before: usize = meshes.iter().map(|mesh| mesh.triangle_count()).sum();
     let more = plan.max_triangles(granted).saturating_sub(before as u64);
     let observer = plan.view().observer_rest();
-    refine(meshes, observer, &limits.allowance, &limits.whole, more)
+    refine(
+        meshes,
+        observer,
+        &limits.allowance,
+        &limits.whole,
+        more,
+        plan.tolerance.motion().as_ref(),
+    )
 }
 
 /// A part that keeps the mesh of its draft.
@@ -128,6 +135,7 @@ fn with_refined<'a>(
         triangles_in: mesh.triangle_count(),
         triangles_out: refined.mesh.triangle_count(),
         minimum_triangles: refined.minimum_triangles,
+        minimum_with_source: refined.minimum_with_source,
     };
     Uncertified {
         name,
@@ -135,6 +143,7 @@ fn with_refined<'a>(
         seen,
         measured: Measured {
             gap: refined.gap,
+            surface_gap: refined.surface_gap,
             counts,
         },
     }

@@ -18,7 +18,9 @@ use super::vertex_data::VertexData;
 use super::{MomentFacts, Photosurface, PlacedSceneError, SurfaceOptions};
 use crate::light_cone::{MAX_DELAYED_RAPIDITY, ModelView, View};
 use crate::material::{Model, Part};
-use crate::scene::{Attribute, Emission, MarkerRadius, Object, Scene, Source, Tolerance};
+use crate::scene::{
+    Attribute, Emission, MarkerRadius, Measure, Object, Scene, Source, Tolerance, Unit,
+};
 use crate::shape::{Appearance, Color, Shape};
 use crate::spacetime::{MAX_RAPIDITY, Velocity, ViewModel};
 
@@ -290,7 +292,8 @@ impl PlacedScene {
         let objects = self.scene.objects().iter().zip(&self.objects);
         objects.map(move |(object, placed_object)| {
             let shown = self.model_view(object, step).expect(A_STEP);
-            let tolerance = self.scene.tolerance(object);
+            let measure = self.measure(object, &placed_object.parts);
+            let tolerance = (self.scene.tolerance(object), measure);
             Plan::of_facets(placed_object, shown, tolerance, wanted).unrefined()
         })
     }
@@ -320,6 +323,31 @@ impl PlacedScene {
         })
     }
 
+    /// Which distance the tolerance of an object with these parts limits: what the scene says, else that of points if a
+    /// part has a texture or colours, if vertices get attributes, or if effects colour them, and else that of surfaces.
+    /// For flat facets, tolerances that are angles limit the distance of points, whose bound holds for surfaces as well.
+    pub fn measure(&self, object: &Object, parts: &[(String, Part)]) -> Measure {
+        let is_round = match &object.source {
+            Source::Shape(shape, _) => shape.is_curved(),
+            Source::File(_) | Source::Model(_) => false,
+        };
+        if !is_round && self.scene.tolerance(object).unit() == Unit::Degrees {
+            return Measure::Points;
+        }
+        let has_points = |part: &Part| {
+            let material = part.material.as_ref();
+            part.mesh().colors().is_some()
+                || material.is_some_and(|material| !material.textures().is_empty())
+        };
+        object.measure.unwrap_or_else(|| {
+            let of_scene = !self.scene.attributes().is_empty() || self.scene.effects().colors();
+            match of_scene || parts.iter().any(|(_, part)| has_points(part)) {
+                true => Measure::Points,
+                false => Measure::Surface,
+            }
+        })
+    }
+
     /// The facts about the scene.
     pub fn facts(&self) -> SceneFacts {
         SceneFacts::new(&self.scene, &self.origins)
@@ -334,10 +362,11 @@ impl PlacedScene {
     ) -> Plan<'a> {
         let shown = self.model_view(object, step).expect(A_STEP);
         let tolerance = self.scene.tolerance(object);
+        let measure = self.measure(object, &placed_object.parts);
         Plan::new(
             placed_object,
             shown,
-            tolerance,
+            (tolerance, measure),
             wanted,
             placed_object.granted(step),
         )

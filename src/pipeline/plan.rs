@@ -10,7 +10,7 @@ use super::mapped_mesh::MappedMesh;
 use super::placed_object::{PlacedObject, Shaped};
 use crate::light_cone::{Extremes, ModelView, View};
 use crate::material::Part;
-use crate::scene::{Tolerance, Unit};
+use crate::scene::{Measure, Tolerance, Unit};
 use crate::shape::Shape;
 use crate::tessellate::Allowance;
 
@@ -56,7 +56,7 @@ impl<'a> Plan<'a> {
     pub(super) fn new(
         placed_object: &'a PlacedObject,
         shown: ModelView,
-        tolerance: Tolerance,
+        tolerance: (Tolerance, Measure),
         wanted: SurfaceOptions,
         granted: u64,
     ) -> Self {
@@ -68,7 +68,7 @@ impl<'a> Plan<'a> {
     pub(super) fn of_facets(
         placed_object: &'a PlacedObject,
         shown: ModelView,
-        tolerance: Tolerance,
+        tolerance: (Tolerance, Measure),
         wanted: SurfaceOptions,
     ) -> Self {
         Self::with_form(placed_object, shown, tolerance, wanted, u64::MAX, false)
@@ -77,7 +77,7 @@ impl<'a> Plan<'a> {
     fn with_form(
         placed_object: &'a PlacedObject,
         shown: ModelView,
-        tolerance: Tolerance,
+        tolerance: (Tolerance, Measure),
         wanted: SurfaceOptions,
         granted: u64,
         is_curved: bool,
@@ -85,7 +85,7 @@ impl<'a> Plan<'a> {
         let (placed_object, view) = placed_object.stand_in(&shown);
         let seen = seen_parts(&view, &placed_object.parts);
         // An absolute tolerance does not depend on how large the object is seen.
-        let is_sampled = tolerance.unit() != Unit::Absolute
+        let is_sampled = tolerance.0.unit() != Unit::Absolute
             && (placed_object.shaped.as_ref()).is_some_and(Shaped::is_sampled);
         let extremes = match &placed_object.shaped {
             Some(shaped) if is_sampled => vec![shaped.extremes(&view)],

@@ -66,9 +66,10 @@ pub(super) fn predict(mut plan: Plan<'_>, wanted: SurfaceOptions, weights: &[f64
         None => facets.len(),
     };
     let each = facets.len() as f64 / looked_at.max(1) as f64;
+    let motion = plan.tolerance.motion();
     let pieces = spread(facets.len(), looked_at).map(|index| {
         let (weight, offsets) = facets[index];
-        weight * each * predicted_pieces(offsets, &draft.limits.allowance)
+        weight * each * predicted_pieces(offsets, &draft.limits.allowance, motion.as_ref())
     });
     Predicted {
         // Added up in their order: the same sum for any number of threads.

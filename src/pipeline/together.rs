@@ -12,6 +12,7 @@ use super::placed_object::{PlacedObject, stretched, triangle_count};
 use super::plan::{Plan, seen_parts};
 use crate::material::Part;
 use crate::mesh::Mesh;
+use crate::scene::Measure;
 use crate::shape::Shape;
 use crate::tessellate::{Counts, largest_gap, shares, survey};
 
@@ -57,13 +58,21 @@ pub(super) fn make_together<'a>(
             let tolerance = &plan.tolerance;
             let observer = tolerance.view.observer_rest();
             let before = draft.stand_ins[index].1.mesh();
-            let minimum = survey(before, observer, f64::INFINITY, &limits.whole);
+            let minimum = survey(
+                before,
+                observer,
+                f64::INFINITY,
+                &limits.whole,
+                tolerance.motion().as_ref(),
+            );
             let measured = Measured {
                 gap: largest_gap(mesh, observer),
+                surface_gap: f64::INFINITY,
                 counts: Counts {
                     triangles_in: before.triangles().len(),
                     triangles_out: mesh.triangles().len(),
                     minimum_triangles: minimum.minimum_triangles,
+                    minimum_with_source: minimum.minimum_with_source,
                 },
             };
             let around = tolerance.box_of_all_steps;
@@ -173,6 +182,8 @@ fn at_all_steps(plans: &mut [Plan<'_>], parts: &[(String, Part)]) -> Vec<AtStep>
     let steps = plans.iter_mut().zip(shown);
     let steps = steps.map(|(plan, (stand_ins, seen))| {
         plan.tolerance.box_of_all_steps = box_of_all_steps;
+        // A mesh that is refined for several steps has no facets that a bound for surfaces could start from.
+        plan.tolerance.measure = Measure::Points;
         AtStep {
             limits: plan.tolerance.limits(&stand_ins, &seen, 1.0),
             stand_ins,

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::forms::{self, FromObject, Keyed, VelocityForm};
-use super::{Emission, InvalidScene, Place, Scale, Tolerance};
+use super::{Emission, InvalidScene, Measure, Place, Scale, Tolerance};
 use crate::material::{Model, Normals};
 use crate::shape::{Appearance, Color, Shape};
 use crate::spacetime::{Event, Rotation, Velocity, ViewModel, WorldLine};
@@ -35,6 +35,8 @@ pub struct Object {
     pub velocity: Velocity,
     /// How far its photosurface may be from the true one, if not as far as the scene says.
     pub tolerance: Option<Tolerance>,
+    /// Which distance the tolerance limits; if absent, that of points where points matter, else that of surfaces.
+    pub measure: Option<Measure>,
     /// Which effects of special relativity its shape is shown with; if absent, those that the scene file says, or both.
     pub model: Option<ViewModel>,
     /// Which normals the parts of its file get; if absent, those of the file.
@@ -65,6 +67,7 @@ impl Object {
             scale: Scale::default(),
             velocity: Velocity::ZERO,
             tolerance: None,
+            measure: None,
             model: None,
             normals: None,
             emission: None,
@@ -131,6 +134,9 @@ struct ObjectFields {
     velocity: Velocity,
     /// How far this object's photosurface may be from the true one; as far as the scene says if absent.
     tolerance: Option<Tolerance>,
+    /// Which distance the tolerance of this object limits: "points", between where each point is drawn and where it is seen,
+    /// or "surface", between the mesh and the photosurface as surfaces. What the scene says if absent.
+    measure: Option<Measure>,
     /// Which effects of special relativity this object's shape is shown with; those that the scene says if absent.
     model: Option<ViewModel>,
     /// Which normals the parts of a file get: "source", those of the file, and of flat facets for a part without any; "smooth",
@@ -182,6 +188,7 @@ impl TryFrom<FromObject<ObjectFields>> for Object {
             scale: fields.scale,
             velocity: fields.velocity,
             tolerance: fields.tolerance,
+            measure: fields.measure,
             model: fields.model,
             normals: fields.normals,
             emission: fields.emission.map(|FromObject(emission)| emission),

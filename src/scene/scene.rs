@@ -9,8 +9,8 @@ use super::forms::{FromObject, Keyed, Steps};
 use super::lamp_form::LampFields;
 use super::observer::{self, ObserverFields};
 use super::{
-    Attributes, Carrier, Effects, InvalidScene, Lamp, LampSource, Object, Observer, Source,
-    Tolerance, Units,
+    Attributes, Carrier, Effects, InvalidScene, Lamp, LampSource, Measure, Object, Observer,
+    Source, Tolerance, Units,
 };
 use crate::material::Normals;
 use crate::spacetime::{Flight, Moment, ViewModel};
@@ -114,6 +114,15 @@ impl Scene {
         self.tolerance = tolerance;
         for object in &mut self.objects {
             object.tolerance = None;
+        }
+        self
+    }
+
+    /// The scene with this measure for all objects, whatever they had.
+    #[must_use]
+    pub fn with_measure_for_all(mut self, measure: Measure) -> Self {
+        for object in &mut self.objects {
+            object.measure = Some(measure);
         }
         self
     }
@@ -274,6 +283,10 @@ struct SceneFields {
     /// How far photosurfaces may be from the true ones; a thousandth of their diagonal if absent.
     #[serde(default)]
     tolerance: Tolerance,
+    /// Which distance tolerances limit: "points", between where each point is drawn and where it is seen, or "surface",
+    /// between meshes and photosurfaces as surfaces. If absent, "points" for objects with a texture, a checker, colours of
+    /// vertices, attributes or effects of colour, else "surface".
+    measure: Option<Measure>,
     /// Which effects of special relativity shapes are shown with; both, as `seen`, if absent.
     #[serde(default)]
     model: ViewModel,
@@ -299,6 +312,7 @@ impl TryFrom<FromObject<SceneFields>> for Scene {
         let mut objects = fields.objects;
         for object in &mut objects {
             object.model.get_or_insert(fields.model);
+            object.measure = object.measure.or(fields.measure);
         }
         let scene = Self::new(observer, objects)?
             .with_steps(fields.steps.0)?

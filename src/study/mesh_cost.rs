@@ -41,9 +41,11 @@ pub struct Made {
     pub triangles: usize,
     /// Of the meshes at rest before refinement, those of round shapes as fine as their curvature asks for.
     pub triangles_in: usize,
-    /// The fewest triangles that theory allows, the sum of all certificates.
+    /// The fewest triangles that theory allows for any mesh, the sum of all certificates.
     pub minimum_triangles: f64,
-    /// `triangles / minimum_triangles`
+    /// The fewest with at least one for each triangle of the source, the sum of all certificates.
+    pub minimum_with_source: f64,
+    /// `triangles / minimum_with_source`
     pub ratio: f64,
     /// Of the GLB with all of them, in bytes.
     pub file_bytes: u64,
@@ -54,7 +56,7 @@ pub struct Made {
     pub peak_memory_bytes: Option<u64>,
     /// Proven: whether all are within the tolerance.
     pub certified: bool,
-    /// Proven: the bound of the gap alone, without curvature and rounding.
+    /// Proven: the bound of the gap of the measure alone, without curvature and rounding.
     pub gap: f64,
     /// Proven: the whole bound.
     pub bound: f64,
@@ -133,6 +135,7 @@ pub(super) fn mesh_cost(
     let certificates = || first.facts.iter().map(|facts| &facts.certificate);
     let triangles = certificates().map(|c| c.triangles_out).sum();
     let minimum_triangles: f64 = certificates().map(|c| c.minimum_triangles).sum();
+    let minimum_with_source: f64 = certificates().map(|c| c.minimum_with_source).sum();
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
     let Measured {
         length,
@@ -151,12 +154,13 @@ pub(super) fn mesh_cost(
         triangles,
         triangles_in: certificates().map(|c| c.triangles_in).sum(),
         minimum_triangles,
-        ratio: triangles as f64 / minimum_triangles,
+        minimum_with_source,
+        ratio: triangles as f64 / minimum_with_source,
         file_bytes: first.bytes,
         seconds: medians(&times),
         peak_memory_bytes,
         certified: certificates().all(|c| c.complete),
-        gap: number * largest(&mut certificates().map(|c| c.gap / c.tolerance)),
+        gap: number * largest(&mut certificates().map(|c| c.measured_gap() / c.tolerance)),
         bound: number * largest(&mut certificates().map(|c| c.total / c.tolerance)),
         bound_length: match tolerance.unit() {
             Unit::Degrees => None,

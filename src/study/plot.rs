@@ -46,7 +46,7 @@ impl CostStudy {
     fn mesh_panels(&self) -> Option<[Panel; 2]> {
         let made = |value: fn(&Made) -> f64| self.points(|cost| cost.made.as_ref().map(value));
         let ours = made(|made| made.triangles as f64);
-        let theory = made(|made| made.minimum_triangles);
+        let theory = made(|made| made.minimum_with_source);
         let uniform = made(|made| made.uniform.triangles);
         let predicted = self.points(|cost| Some(cost.predicted_triangles));
         let times = made(|made| made.seconds.photosurface);

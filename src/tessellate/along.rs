@@ -19,12 +19,18 @@ pub(super) struct Along {
     pub(super) bound: f64,
     /// Whether the gap is very likely within a millionth of the bound.
     pub(super) is_sharp: bool,
+    /// The vector `G` of the bound, hardly longer than 1; zero where nothing is known.
+    pub(super) direction: DVec3,
+    /// The in-plane gradient of the interpolated distance, shorter than 1.
+    pub(super) slope: DVec3,
 }
 
 impl Along {
     const UNKNOWN: Self = Self {
         bound: f64::INFINITY,
         is_sharp: false,
+        direction: DVec3::ZERO,
+        slope: DVec3::ZERO,
     };
 }
 
@@ -97,8 +103,9 @@ pub(super) fn gap_along(plane: &Plane, [a, b, c]: [&PlanePoint; 3]) -> Along {
     } else {
         (a, b, c)
     };
+    let slope = plane.x * slope.x + plane.y * slope.y;
     let direction = if is_inside {
-        plane.x * slope.x + plane.y * slope.y + plane.away * across
+        slope + plane.away * across
     } else {
         let rho = (0.5 * (p.distance * q.distance + p.offset.dot(q.offset)))
             .max(0.0)
@@ -125,6 +132,8 @@ pub(super) fn gap_along(plane: &Plane, [a, b, c]: [&PlanePoint; 3]) -> Along {
     Along {
         bound,
         is_sharp: bound - least <= DOUBT * bound,
+        direction,
+        slope,
     }
 }
 

@@ -3,12 +3,17 @@
 
 use glam::DVec3;
 
+use super::Motion;
+
 /// Range of squared distances for which the products below neither overflow nor vanish.
 const PLAIN: std::ops::RangeInclusive<f64> = 1e-200..=1e200;
 
 /// Where the square of the shortest side is less than this fraction of the square of the longest side, the largest
 /// angle is not known accurately.
 const NEEDLE: f64 = 1e-6;
+
+/// The square of the ratio of distance to size from which on a single place tells the integral.
+const SMALL: f64 = 100.0;
 
 /// Room for rounding errors: a dozen operations, and a thousand epsilon for the angle of a triangle that is almost a
 /// needle.
@@ -22,6 +27,9 @@ pub(crate) struct Ceilings {
     /// An upper bound on the integral of `2 h / r^2` over the triangle, where `h` is the distance of its plane from the
     /// observer and `r` that of the point; also a length in the rest frame.
     pub(crate) area: f64,
+    /// The integral of `2 h share / r^2` over the triangle, to a hundredth, with the share of `motion`, or 1 for points;
+    /// NaN for a triangle that is not small enough for a single place to tell it.
+    pub(crate) integral: f64,
 }
 
 impl Ceilings {
@@ -29,10 +37,11 @@ impl Ceilings {
     pub(crate) const UNKNOWN: Self = Self {
         gap: f64::INFINITY,
         area: f64::INFINITY,
+        integral: f64::NAN,
     };
 }
 
-/// Both bounds for the triangle whose corners have the offsets `a`, `b`, `c` from the observer, in the rest frame;
+/// The bounds for the triangle whose corners have the offsets `a`, `b`, `c` from the observer, in the rest frame;
 /// infinity where the triangle is not small compared with its distance. The computation has no branch.
 ///
 /// # Derivation
@@ -45,7 +54,7 @@ impl Ceilings {
 /// `R = L / (2 sin C)`; in any triangle `R^2 <= L^2 / 3` (Jung's theorem). No point of the triangle is nearer to the
 /// observer than `|a| - L`.
 #[inline(always)]
-pub(crate) fn ceilings([a, b, c]: [DVec3; 3]) -> Ceilings {
+pub(crate) fn ceilings([a, b, c]: [DVec3; 3], motion: Option<&Motion>) -> Ceilings {
     let distance_squared = a.length_squared();
     let (ab, ac) = (b - a, c - a);
     let [p, q, s] = [ab, ac, c - b].map(DVec3::length_squared);
@@ -62,7 +71,14 @@ pub(crate) fn ceilings([a, b, c]: [DVec3; 3]) -> Ceilings {
         3.0
     };
     let nearest = distance_squared.sqrt() - longest.sqrt();
-    let twice_volume = a.dot(ab.cross(ac)).abs();
+    let normal = ab.cross(ac);
+    let twice_volume = a.dot(normal).abs();
+    let middle_of_all = a + (ab + ac) / 3.0;
+    let middle_squared = middle_of_all.length_squared();
+    let share = match motion {
+        Some(motion) => motion.share(normal, middle_of_all / middle_squared.sqrt()),
+        None => 1.0,
+    };
     // The rounding error of the volume is relative to its terms.
     let rounded = 64.0 * f64::EPSILON * distance_squared.sqrt() * longest;
     // Written so that NaN gives `UNKNOWN`.
@@ -71,6 +87,10 @@ pub(crate) fn ceilings([a, b, c]: [DVec3; 3]) -> Ceilings {
         Ceilings {
             gap: longest / (2.0 * four_sines * nearest) * UP,
             area: (twice_volume + rounded) / (nearest * nearest) * UP,
+            integral: match SMALL * longest <= distance_squared {
+                true => twice_volume * share / middle_squared,
+                false => f64::NAN,
+            },
         }
     } else {
         Ceilings::UNKNOWN
@@ -109,7 +129,7 @@ mod tests {
             };
             let corners = [corner(0.0), corner(0.13), corner(0.29)];
             let (ceiling, gap) = (
-                ceilings(corners).gap,
+                ceilings(corners, None).gap,
                 triangle_gap(corners[0], corners[1], corners[2]),
             );
             assert!(ceiling >= gap, "{corners:?}: {ceiling} {gap}");
@@ -135,7 +155,7 @@ mod tests {
                 let [a, b, c] = [at(0.0, 0.0), at(1.0, 0.0), at(x, y)];
                 for corners in [[a, b, c], [b, c, a], [c, b, a]] {
                     let [p, q, r] = corners;
-                    let (ceiling, gap) = (ceilings(corners).gap, triangle_gap(p, q, r));
+                    let (ceiling, gap) = (ceilings(corners, None).gap, triangle_gap(p, q, r));
                     assert!(ceiling >= gap, "{x} {y}: {ceiling} {gap}");
                     // The room is three times the longest side divided by the distance.
                     assert!(
@@ -156,9 +176,9 @@ mod tests {
             [DVec3::NAN; 3],
             [DVec3::X * 1e160; 3],
         ] {
-            assert_eq!(ceilings(corners).gap, f64::INFINITY, "{corners:?}");
+            assert_eq!(ceilings(corners, None).gap, f64::INFINITY, "{corners:?}");
         }
         // A triangle that is a single point has no angles, and its gap is zero.
-        assert_eq!(ceilings([DVec3::X; 3]).gap, 0.0);
+        assert_eq!(ceilings([DVec3::X; 3], None).gap, 0.0);
     }
 }

@@ -5,19 +5,20 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
+use super::minimum::MINIMUM_ERROR;
 use super::stretch::local_stretch;
 use super::{nearest_point, triangle_gap};
 use crate::light_cone::{Extremes, View};
 use crate::mesh::Mesh;
-use crate::scene::Unit;
+use crate::scene::{Measure, Unit};
 
 /// Room for the rounding errors of a short product of bounds.
 const UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
 /// A proven bound on the distance between a mesh and the true photosurface, with its parts.
 ///
-/// Lengths are in the observer's frame; where the tolerance is an angle, `tolerance`, `gap`, `curvature`,
-/// `rounding` and `total` are angles seen by the observer, in degrees.
+/// Lengths are in the observer's frame; where the tolerance is an angle, `tolerance`, `gap`, `surface_gap`,
+/// `curvature`, `rounding` and `total` are angles seen by the observer, in degrees.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Certificate {
     /// Unit of the tolerance and of all bounds: a length in the observer's frame, or degrees.
@@ -26,15 +27,22 @@ pub struct Certificate {
     pub unit: Unit,
     /// The tolerance that was asked for.
     pub tolerance: f64,
-    /// Proven bound on the distance between the mapped flat triangles and the photosurface of the flat triangles at
-    /// rest; of a round shape without a resolution of its own that between its triangles and its true photosurface.
+    /// The measure that was asked for: which of the two gaps the total contains and the tolerance limits.
+    pub measure: Measure,
+    /// Proven bound on the distance between a point of a mapped flat triangle and the place where the same point of the
+    /// flat triangle at rest is seen; of a round shape without a resolution the place where the point of its true surface
+    /// with the same coordinates is seen.
     pub gap: f64,
+    /// Proven bound on the distance between the mapped flat triangles and the photosurface of the flat triangles at
+    /// rest, as surfaces: from each point of one to the nearest point of the other; of a round shape without a resolution the
+    /// photosurface of its true surface. Never more than `gap`.
+    pub surface_gap: f64,
     /// Proven bound on the distance between the photosurface of the triangles at rest and that of the curved surface
     /// that they stand for; zero where `gap` is about the curved surface itself.
     pub curvature: f64,
     /// Proven bound on the distance that rounding adds, in the computation and in the numbers of the file.
     pub rounding: f64,
-    /// Sum of the three bounds.
+    /// Sum of the gap of the measure, the curvature and the rounding.
     pub total: f64,
     /// Whether the total is within the tolerance.
     pub complete: bool,
@@ -42,11 +50,17 @@ pub struct Certificate {
     pub triangles_in: usize,
     /// Number of triangles of the photosurface.
     pub triangles_out: usize,
-    /// The fewest triangles with which the mesh can be within the tolerance by theory: each inside a triangle at rest; or of
-    /// a round shape without a resolution, with corners on its true surface, an integral with a numerical error of about 1
-    /// per cent.
+    /// The fewest triangles with vertices on the photosurface with which the gap of the measure can be within the
+    /// tolerance, for a small tolerance, whatever the triangles of the source: an integral over the photosurface. Edges,
+    /// rims and creases are not counted; where nothing bends, the number is 0. Of a round shape without a resolution: with
+    /// corners on its true surface.
     pub minimum_triangles: f64,
-    /// The ratio `triangles_out / minimum_triangles`.
+    /// The same with at least one triangle for each triangle of the source, and as many as the pieces into which its
+    /// sides have to be divided ask for.
+    pub minimum_with_source: f64,
+    /// Relative numerical error of both minima, at most.
+    pub minimum_error: f64,
+    /// The ratio `triangles_out / minimum_with_source`.
     pub ratio: f64,
 }
 
@@ -101,6 +115,8 @@ pub(crate) struct Singles {
 pub(crate) struct Bounds {
     /// The largest `gamma beta e` of the mesh's triangles.
     pub(crate) gap: f64,
+    /// The same as surfaces.
+    pub(crate) surface_gap: f64,
     /// Bound on the distance of the facets from the curved surface, in the rest frame.
     pub(crate) deviation: f64,
     /// Bound on the same distance on the photosurface, in the observer's frame.
@@ -115,16 +131,34 @@ pub(crate) struct Counts {
     pub(crate) triangles_in: usize,
     pub(crate) triangles_out: usize,
     pub(crate) minimum_triangles: f64,
+    pub(crate) minimum_with_source: f64,
 }
 
 impl Certificate {
     /// A certificate whose tolerance and bounds are lengths in the observer's frame.
-    pub(crate) fn of_lengths(tolerance: f64, bounds: Bounds, counts: Counts) -> Self {
-        let total = bounds.gap + bounds.curvature + bounds.rounding;
+    pub(crate) fn of_lengths(
+        tolerance: f64,
+        measure: Measure,
+        bounds: Bounds,
+        counts: Counts,
+    ) -> Self {
+        let gap = match measure {
+            Measure::Points => bounds.gap,
+            Measure::Surface => bounds.surface_gap,
+        };
+        let total = gap + bounds.curvature + bounds.rounding;
+        let of_surface = bounds.surface_gap;
         Self::new(
             Unit::Absolute,
             tolerance,
-            [bounds.gap, bounds.curvature, bounds.rounding, total],
+            measure,
+            [
+                bounds.gap,
+                of_surface,
+                bounds.curvature,
+                bounds.rounding,
+                total,
+            ],
             counts,
         )
     }
@@ -133,9 +167,11 @@ impl Certificate {
     ///
     /// A point that is displaced by a length is seen displaced by an angle of at most `asin(length / distance)`, where
     /// the distance is that of the nearer of its two positions. On a triangle this distance is at least the smallest
-    /// seen distance of a corner minus `gamma e`, minus the bounds of curvature and rounding.
+    /// seen distance of a corner minus `gamma e`, minus the bounds of curvature and rounding. As a bound on the angle
+    /// between the surfaces this is that between points.
     pub(crate) fn of_angles(
         degrees: f64,
+        measure: Measure,
         view: &View,
         rest: &Mesh,
         bounds: Bounds,
@@ -179,7 +215,9 @@ impl Certificate {
                 180.0
             }
         };
-        let certificate = Self::new(Unit::Degrees, degrees, sines.map(angle), counts);
+        let [gap, curvature, rounding, total] = sines.map(angle);
+        let bounds = [gap, gap, curvature, rounding, total];
+        let certificate = Self::new(Unit::Degrees, degrees, measure, bounds, counts);
         Self {
             // No displacement on the sky is larger than 180 degrees.
             total: certificate.total.min(180.0),
@@ -187,45 +225,66 @@ impl Certificate {
         }
     }
 
-    /// The same for triangles as `seen`, each with a bound on its distance from the photosurface, a length in the observer's
-    /// frame.
+    /// The same for triangles as `seen`, each with two bounds on its distance from the photosurface, as surfaces and between
+    /// points: lengths in the observer's frame.
     pub(crate) fn of_seen_angles(
         degrees: f64,
+        measure: Measure,
         seen: &Mesh,
-        bounds: &[f64],
+        bounds: &[[f64; 2]],
         rounding: f64,
         counts: Counts,
     ) -> Self {
-        let of_each = bounds.iter().enumerate().map(|(index, &bound)| {
+        let of_each = bounds.par_iter().enumerate().map(|(index, bounds)| {
             let nearest = nearest_point(seen.corners_of(index)).length() * (1.0 - 1e-12);
-            let left = nearest - bound - rounding;
-            [bound, rounding, bound + rounding].map(|length| angle_of(length, left))
+            let angle = |length: f64| angle_of(length, nearest - length - rounding);
+            let [of_surface, of_points] = *bounds;
+            let measured = match measure {
+                Measure::Points => of_points,
+                Measure::Surface => of_surface,
+            };
+            let total = angle_of(measured + rounding, nearest - measured - rounding);
+            [angle(of_points), angle(of_surface), angle(rounding), total]
         });
-        let larger = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[k].max(b[k]));
-        let [gap, rounding, total] = of_each.fold([0.0; 3], larger);
-        Self::new(Unit::Degrees, degrees, [gap, 0.0, rounding, total], counts)
+        let larger = |a: [f64; 4], b: [f64; 4]| [0, 1, 2, 3].map(|k| a[k].max(b[k]));
+        let [gap, surface_gap, rounding, total] = of_each.reduce(|| [0.0; 4], larger);
+        let bounds = [gap, surface_gap, 0.0, rounding, total.min(180.0)];
+        Self::new(Unit::Degrees, degrees, measure, bounds, counts)
     }
 
-    fn new(unit: Unit, tolerance: f64, bounds: [f64; 4], counts: Counts) -> Self {
-        let [gap, curvature, rounding, total] = bounds;
+    /// The bound of the gap that the tolerance limits.
+    pub fn measured_gap(&self) -> f64 {
+        match self.measure {
+            Measure::Points => self.gap,
+            Measure::Surface => self.surface_gap,
+        }
+    }
+
+    fn new(unit: Unit, tolerance: f64, measure: Measure, bounds: [f64; 5], counts: Counts) -> Self {
+        let [gap, surface_gap, curvature, rounding, total] = bounds;
         let total = total * UP;
-        // The fewest triangles are at least one, even if the computation of their number overflowed.
-        let minimum_triangles = match counts.minimum_triangles.is_nan() {
-            true => 1.0,
-            false => finite(counts.minimum_triangles),
+        // A computation that overflowed tells nothing.
+        let fewest = |number: f64, at_least: f64| match number.is_nan() {
+            true => at_least,
+            false => finite(number),
         };
+        let minimum_with_source = fewest(counts.minimum_with_source, 1.0);
         Self {
             unit,
             tolerance: finite(tolerance),
+            measure,
             gap: finite(gap),
+            surface_gap: finite(surface_gap),
             curvature: finite(curvature),
             rounding: finite(rounding),
             total: finite(total),
             complete: total <= tolerance && total.is_finite(),
             triangles_in: counts.triangles_in,
             triangles_out: counts.triangles_out,
-            minimum_triangles,
-            ratio: finite(counts.triangles_out as f64 / minimum_triangles),
+            minimum_triangles: fewest(counts.minimum_triangles, 0.0),
+            minimum_with_source,
+            minimum_error: MINIMUM_ERROR,
+            ratio: finite(counts.triangles_out as f64 / minimum_with_source),
         }
     }
 }
@@ -263,6 +322,7 @@ mod tests {
             for minimum_triangles in hard {
                 let bounds = Bounds {
                     gap,
+                    surface_gap: gap,
                     deviation: 0.0,
                     curvature: 1.0,
                     rounding: 1e308,
@@ -271,8 +331,10 @@ mod tests {
                     triangles_in: 1,
                     triangles_out: 1,
                     minimum_triangles,
+                    minimum_with_source: minimum_triangles,
                 };
-                let certificate = Certificate::of_lengths(f64::MAX, bounds, counts);
+                let certificate =
+                    Certificate::of_lengths(f64::MAX, Measure::Points, bounds, counts);
                 let text = serde_json::to_string(&certificate).unwrap();
                 assert!(!text.contains("null"), "{text}");
                 let sum = gap + 1.0 + 1e308;

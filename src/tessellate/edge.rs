@@ -1,8 +1,9 @@
-//! The edge rule: the points that divide an edge depend on its two ends alone.
+//! The edge rule: the points that divide an edge depend on its two ends and on the planes of all facets that share it.
 
 use glam::DVec3;
 
-use super::{Allowance, edge_gap};
+use super::across::Facet;
+use super::{Allowance, Motion, edge_gap};
 
 /// Allowed gap of an edge as a fraction of the allowed gap of a triangle.
 ///
@@ -11,22 +12,122 @@ use super::{Allowance, edge_gap};
 /// equilateral. On the plates of the benchmark the fractions 0.6 and 0.9 cost 3 to 40 per cent more triangles.
 pub(super) const EDGE_SHARE: f64 = 0.75;
 
+/// Under the surface measure: the rim cost of an edge as a fraction of the tolerance. The rest is for the rays of the
+/// triangles beside it.
+const RIM_SHARE: f64 = 0.5;
+
+/// The same fraction where all facets of the edge hold the motion, so that their rays have no length.
+const RIM_SHARE_ALONE: f64 = 0.9;
+
+/// Under the surface measure: the same as [`EDGE_SHARE`] for an edge that is no rim, of what [`RIM_SHARE`] leaves.
+const FREE_SHARE: f64 = EDGE_SHARE * (1.0 - RIM_SHARE);
+
+/// An edge whose facets need few pieces, and count with their gaps, stays whole up to this multiple of its allowed gap.
+/// Divided edges on all sides of a triangle that is hardly too large would make four of it where two suffice.
+pub(super) const SPARED: f64 = 0.95 / EDGE_SHARE;
+
 /// Number of pieces of the quadrature along an edge. The result is checked, so more digits are not needed.
 const SAMPLES: usize = 64;
 
-/// Whether an edge has to be divided; its ends are offsets from the observer, in the rest frame.
-pub(super) fn needs_division(a: DVec3, b: DVec3, allowance: &Allowance) -> bool {
-    edge_gap(a, b) > EDGE_SHARE * allowance.between(&[a, b])
+/// How large gaps along an edge may be: the same for every triangle of the edge, because it takes the smallest of what
+/// its facets allow.
+pub(super) struct EdgeRule<'a> {
+    pub(super) allowance: &'a Allowance,
+    /// The motion, under the surface measure.
+    pub(super) motion: Option<&'a Motion>,
+    /// The facets of all triangles that share the edge, under the surface measure; `None` for those that count with
+    /// their gaps.
+    pub(super) facets: &'a [Option<Facet>],
+    /// Whether the surface goes on in one plane beyond the edge.
+    pub(super) is_free: bool,
 }
 
-/// About how many pieces an edge will be divided into: the gap of a piece is proportional to the square of its length.
-pub(super) fn predicted_edge_pieces(a: DVec3, b: DVec3, allowance: &Allowance) -> f64 {
-    let excess = edge_gap(a, b) / (EDGE_SHARE * allowance.between(&[a, b]));
+impl EdgeRule<'_> {
+    /// The allowed gap of a piece between these offsets from the observer, of an edge with a unit direction.
+    pub(super) fn allowed(&self, offsets: &[DVec3], along: DVec3) -> f64 {
+        let allowed = self.allowance.between(offsets);
+        let Some(motion) = self.motion else {
+            return EDGE_SHARE * allowed;
+        };
+        let of_facet = |facet: &Option<Facet>| {
+            let Some(facet) = facet else {
+                return EDGE_SHARE;
+            };
+            let share = match self.is_free {
+                true => {
+                    let shares = offsets.iter().map(|&offset| facet.share(offset));
+                    FREE_SHARE / shares.fold(0.0, f64::max)
+                }
+                false => rim_share(facet) / rim_gap_share(motion, offsets, along),
+            };
+            match share > EDGE_SHARE && facet.is_plain(offsets, allowed * share / EDGE_SHARE) {
+                true => share,
+                false => EDGE_SHARE,
+            }
+        };
+        let shares = self.facets.iter().map(of_facet);
+        allowed * shares.reduce(f64::min).unwrap_or(EDGE_SHARE)
+    }
+}
+
+fn rim_share(facet: &Facet) -> f64 {
+    if facet.holds_the_motion() {
+        RIM_SHARE_ALONE
+    } else {
+        RIM_SHARE
+    }
+}
+
+/// The share of the gap that leads away from a rim between these offsets.
+pub(super) fn rim_gap_share(motion: &Motion, offsets: &[DVec3], along: DVec3) -> f64 {
+    let slopes = offsets
+        .iter()
+        .map(|offset| along.dot(offset.normalize_or_zero()));
+    let range = slopes.fold((1.0f64, -1.0f64), |(low, high), slope| {
+        (low.min(slope), high.max(slope))
+    });
+    motion.edge_share(along, range)
+}
+
+/// About how many pieces a side of a facet will be divided into, as if it were a rim: the gap of a piece is proportional
+/// to the square of its length.
+pub(super) fn predicted_edge_pieces(
+    a: DVec3,
+    b: DVec3,
+    rule: &EdgeRule<'_>,
+    is_spared: bool,
+) -> f64 {
+    let allowed = rule.allowed(&[a, b], (b - a).normalize_or_zero());
+    let excess = edge_gap(a, b) / allowed;
+    let is_of_points = allowed <= EDGE_SHARE * rule.allowance.between(&[a, b]);
+    if is_spared && is_of_points && excess <= SPARED {
+        return 1.0;
+    }
     excess.sqrt().ceil().max(1.0)
 }
 
-/// Where to divide the edge between the positions `a` and `b`, as increasing parameters from 0 at `a` to 1 at `b`;
-/// empty if the edge need not be divided. All positions, also that of `observer`, are in the rest frame.
+/// The fewest pieces into which the edge between two offsets has to be divided so that the gap of each is at most
+/// `allowed`; for more than two pieces by theory, with room for its numerical error.
+pub(super) fn fewest_pieces(
+    a: DVec3,
+    b: DVec3,
+    gap: f64,
+    allowed: &dyn Fn(&[DVec3], DVec3) -> f64,
+) -> f64 {
+    let along = (b - a).normalize_or_zero();
+    let times = gap / allowed(&[0.5 * (a + b)], along);
+    if !(times > 1.0) {
+        return 1.0;
+    }
+    if times <= 4.0 {
+        return 2.0;
+    }
+    let scale = Scale::new(a, b, &|here| allowed(&[here], along));
+    (0.98 * scale.exact_pieces()).ceil().max(2.0)
+}
+
+/// Where to divide the edge between the positions `a` and `b`, as increasing parameters from 0 at `a` to 1 at `b`: at
+/// least one. All positions, also that of `observer`, are in the rest frame.
 ///
 /// The pieces have nearly equal gaps. Let `h` be the distance of the edge's line from the observer and `s` the length
 /// along the line from its point nearest to the observer. The distance `r` has the second derivative `r'' = h^2 / r^3`,
@@ -41,13 +142,13 @@ pub(super) fn division(
     a: DVec3,
     b: DVec3,
     observer: DVec3,
-    allowance: &Allowance,
+    rule: &EdgeRule<'_>,
     most: usize,
 ) -> Option<Vec<f64>> {
     let (offset_a, offset_b) = (a - observer, b - observer);
-    if !needs_division(offset_a, offset_b, allowance) {
-        return Some(vec![]);
-    }
+    let along = (b - a).normalize_or_zero();
+    let needs_division =
+        |from: DVec3, to: DVec3| edge_gap(from, to) > rule.allowed(&[from, to], along);
     if most == 0 {
         return None;
     }
@@ -55,7 +156,7 @@ pub(super) fn division(
         let mut from = offset_a;
         parameters.iter().chain([&1.0]).all(|&parameter| {
             let to = point_between(a, b, parameter) - observer;
-            !needs_division(std::mem::replace(&mut from, to), to, allowance)
+            !needs_division(std::mem::replace(&mut from, to), to)
         })
     };
     // Most edges are short compared with their distance: one cut in the middle is enough.
@@ -63,7 +164,7 @@ pub(super) fn division(
         return Some(vec![0.5]);
     }
 
-    let scale = Scale::new(offset_a, offset_b, allowance);
+    let scale = Scale::new(offset_a, offset_b, &|here| rule.allowed(&[here], along));
     let mut pieces = scale.pieces().max(2);
     loop {
         if pieces - 1 > most {
@@ -112,7 +213,8 @@ struct Scale {
 }
 
 impl Scale {
-    fn new(a: DVec3, b: DVec3, allowance: &Allowance) -> Self {
+    /// The scale between two offsets from the observer, for an allowed gap of pieces at a place.
+    fn new(a: DVec3, b: DVec3, allowed: &dyn Fn(DVec3) -> f64) -> Self {
         let edge = b - a;
         let length = edge.length();
         let along = edge / length;
@@ -124,7 +226,7 @@ impl Scale {
         let foot = a - along * start;
         let density = |t: f64| {
             let here = foot + along * (distance * t.sinh());
-            1.0 / (t.cosh().sqrt() * allowance.between(&[here]).sqrt())
+            1.0 / (t.cosh().sqrt() * allowed(here).sqrt())
         };
         let mut cumulative = vec![0.0];
         let mut sum = 0.0;
@@ -148,10 +250,13 @@ impl Scale {
 
     /// About how many pieces are enough.
     fn pieces(&self) -> usize {
+        self.exact_pieces().ceil().min(MAX_PIECES as f64) as usize
+    }
+
+    /// The number of pieces with the allowed gap, by theory, as if pieces could be parts of pieces.
+    fn exact_pieces(&self) -> f64 {
         let total = self.cumulative[SAMPLES] * self.distance.sqrt();
-        (total / (8.0 * EDGE_SHARE).sqrt())
-            .ceil()
-            .min(MAX_PIECES as f64) as usize
+        total / 8f64.sqrt()
     }
 
     /// The parameters that divide the edge into `pieces` pieces with equal integrals.

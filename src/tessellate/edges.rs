@@ -6,9 +6,18 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Allowance;
-use super::edge::{division, needs_division};
+use super::across::Facet;
+use super::adjacency::{Adjacency, Member, SharedEdge};
+use super::edge::{EDGE_SHARE, EdgeRule, SPARED, division};
+use super::{Allowance, Motion};
 use crate::mesh::Mesh;
+
+/// A triangle whose gap is at most so many times the allowed one needs few pieces.
+const FEW_PIECES: f64 = 2.0;
+
+/// The largest side of a triangle with too large a gap is not divided if its own gap is less than this fraction of the
+/// allowed one: a point inside is better then.
+pub(super) const LARGEST: f64 = 0.9;
 
 /// The source of a new vertex: corners of the old mesh, and weights that interpolate them.
 #[derive(Clone, Copy, Debug)]
@@ -76,66 +85,95 @@ pub(super) fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]]
 }
 
-/// Divides the edges of some triangles where the edge rule asks for it. Each new vertex adds one triangle for each
+/// Divides the edges for which the edge rule or one of its triangles asks. Each new vertex adds one triangle for each
 /// triangle that shares the edge. `more` counts these additional triangles; the result is `None` if the count exceeds
 /// its limit.
+///
+/// An edge is divided if its gap is more than the rule allows, or [`SPARED`] times that where all of its triangles need
+/// few pieces; and if a triangle with too large a gap, which no other of its sides would divide, has no larger side.
 pub(super) fn divided_edges(
-    mesh: &Mesh,
-    looked_at: &[u32],
+    meshes: &[&Mesh],
+    adjacency: &Adjacency,
     observer: DVec3,
     allowance: &Allowance,
+    motion: Option<&Motion>,
     more: &Count,
-) -> Option<Edges> {
-    if looked_at.is_empty() {
-        return Some(Edges {
-            divisions: HashMap::new(),
-            origins: vec![],
-        });
-    }
-    let positions = mesh.positions();
-    let needs_division = |[a, b]: [u32; 2]| {
-        let offset = |vertex: u32| positions[vertex as usize] - observer;
-        needs_division(offset(a), offset(b), allowance)
-    };
-    let mut sides: Vec<[u32; 2]> = looked_at
+) -> Option<Vec<Edges>> {
+    let gaps: Vec<f64> = adjacency
+        .looked
         .par_iter()
-        .flat_map_iter(|&index| sides(mesh.triangles()[index as usize]))
-        .filter(|&side| needs_division(side))
-        .map(|side| canonical(side, positions))
-        .collect();
-    sides.par_sort_unstable();
-    let edges: Vec<([u32; 2], u64)> = sides
-        .chunk_by(|a, b| a == b)
-        .map(|equal| (equal[0], equal.len() as u64))
-        .collect();
-    let divisions: Option<Vec<Vec<f64>>> = edges
-        .par_iter()
-        .map(|&([a, b], triangles)| {
-            let parameters = division(
-                positions[a as usize],
-                positions[b as usize],
-                observer,
-                allowance,
-                (more.left() / triangles) as usize,
-            )?;
-            let room = more.add(triangles * parameters.len() as u64);
-            room.then_some(parameters)
+        .map(|looked| {
+            let mesh = meshes[looked.mesh as usize];
+            let corners = mesh.triangles()[looked.index as usize];
+            let offsets = corners.map(|corner| mesh.positions()[corner as usize] - observer);
+            looked.gap / allowance.between(&offsets)
         })
         .collect();
-
-    let mut result = Edges {
-        divisions: HashMap::with_capacity(edges.len()),
-        origins: vec![],
+    let division = |edge: &SharedEdge| -> Option<Vec<f64>> {
+        let facets: Vec<Option<Facet>> = (edge.members.iter())
+            .map(|member| adjacency.facet(member.looked as usize))
+            .collect();
+        let rule = EdgeRule {
+            allowance,
+            motion,
+            facets: &facets,
+            is_free: edge.is_free,
+        };
+        let [a, b] = edge.ends;
+        let offsets = [a - observer, b - observer];
+        let allowed = rule.allowed(&offsets, (b - a).normalize_or_zero());
+        let times = edge.gap / allowed;
+        let gap = |member: &Member| gaps[member.looked as usize];
+        let is_of_points = allowed <= EDGE_SHARE * allowance.between(&offsets);
+        let few = edge.members.iter().all(|member| gap(member) <= FEW_PIECES);
+        let spared = match is_of_points && few {
+            true => SPARED,
+            false => 1.0,
+        };
+        let is_largest = |member: &Member| {
+            let looked = &adjacency.looked[member.looked as usize];
+            gap(member) > 1.0 && looked.largest_side == member.side
+        };
+        let is_wanted = || times > LARGEST && edge.members.iter().any(is_largest);
+        if !(times > spared || is_wanted()) {
+            return Some(vec![]);
+        }
+        let triangles = edge.members.len() as u64;
+        let parameters = division(a, b, observer, &rule, (more.left() / triangles) as usize)?;
+        let room = more.add(triangles * parameters.len() as u64);
+        room.then_some(parameters)
     };
-    for (([a, b], _), parameters) in edges.into_iter().zip(divisions?) {
-        let first = (positions.len() + result.origins.len()) as u32;
-        result
-            .origins
-            .extend(parameters.iter().map(|&parameter| Origin {
-                corners: [a, b, b],
-                weights: DVec3::new(1.0 - parameter, parameter, 0.0),
-            }));
-        result.divisions.insert([a, b], (parameters, first));
+    let divisions: Option<Vec<Vec<f64>>> = adjacency.edges.par_iter().map(division).collect();
+
+    let mut pairs: Vec<Vec<([u32; 2], Vec<f64>)>> = vec![vec![]; meshes.len()];
+    for (edge, parameters) in adjacency.edges.iter().zip(divisions?) {
+        if parameters.is_empty() {
+            continue;
+        }
+        for member in &edge.members {
+            let mesh = adjacency.looked[member.looked as usize].mesh as usize;
+            pairs[mesh].push((member.pair, parameters.clone()));
+        }
     }
-    Some(result)
+    let edges = meshes.iter().zip(pairs);
+    let edges = edges.map(|(mesh, mut pairs)| {
+        pairs.sort_by_key(|&(pair, _)| pair);
+        pairs.dedup_by_key(|&mut (pair, _)| pair);
+        let mut result = Edges {
+            divisions: HashMap::with_capacity(pairs.len()),
+            origins: vec![],
+        };
+        for ([a, b], parameters) in pairs {
+            let first = (mesh.positions().len() + result.origins.len()) as u32;
+            result
+                .origins
+                .extend(parameters.iter().map(|&parameter| Origin {
+                    corners: [a, b, b],
+                    weights: DVec3::new(1.0 - parameter, parameter, 0.0),
+                }));
+            result.divisions.insert([a, b], (parameters, first));
+        }
+        result
+    });
+    Some(edges.collect())
 }

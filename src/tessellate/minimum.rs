@@ -1,25 +1,25 @@
-//! The fewest triangles that theory allows for a tolerance, and about how many the program will make.
+//! The fewest triangles that theory allows for a tolerance.
 
 use glam::DVec3;
 
-use super::chart::{Chart, Plane};
-use super::edge::predicted_edge_pieces;
 use super::gap::{exponent, scaled, times_two_to};
-use super::{Allowance, triangle_gap};
+use super::{Allowance, Motion};
 
 /// `1.5 sqrt(3)`: an equilateral triangle with the gap `e` at its middle has the area `1.5 sqrt(3) e` in the gap metric
 /// (see [`minimum_triangles`]).
 pub(super) const AREA_OF_GAP: f64 = 2.598_076_211_353_316;
 
+/// Relative numerical error of the integrals, at most (`the_minimum_is_as_accurate_as_it_says`).
+pub(super) const MINIMUM_ERROR: f64 = 0.02;
+
+/// The share of a gap may differ so many times between places of a piece on which a single quadrature is enough.
+const STEEP: f64 = 1.25;
+
+/// Limit on the halvings of a triangle because of the share alone: the share of a piece as small as this counts little.
+const MAX_HALVINGS_OF_SHARE: u32 = 20;
+
 /// For a triangle whose longest side is less than this fraction of its distance, a single quadrature is enough.
 const SMALL: f64 = 0.5;
-
-/// Away from the boundary refinement makes about this many times the number of triangles that theory asks for.
-const TYPICAL_RATIO: f64 = 1.1;
-
-/// In charts flatter than the sky refinement makes about this many times the number of triangles that the chart's
-/// metric asks for; measured: 1.2 to 1.7.
-const FLAT_RATIO: f64 = 1.6;
 
 /// Limit on the halvings of a triangle that reaches the observer; the remaining piece contributes almost nothing.
 const MAX_HALVINGS: u32 = 60;
@@ -36,7 +36,8 @@ const MAX_HALVINGS_OF_LINE: u32 = 1100;
 
 /// The fewest triangles, for a small tolerance, that keep the gap `e` of each within the allowance: the integral of
 /// `h / (r^2 allowed)` over the triangle, divided by `1.5 sqrt(3)`. The corners are offsets from the observer in the
-/// rest frame; `h` is the distance of the triangle's plane, `r` that of a point, `allowed` the allowed gap there.
+/// rest frame; `h` is the distance of the triangle's plane, `r` that of a point, `allowed` the allowed gap there. With a
+/// motion the result is that for the surface: the integrand is multiplied by the share of the gap (`motion`).
 ///
 /// # Derivation
 ///
@@ -45,11 +46,20 @@ const MAX_HALVINGS_OF_LINE: u32 = 1100;
 /// at the distance `h` its area element is `h / r^2 dA`. Among triangles with the same gap the equilateral one has the
 /// largest area in this metric.
 ///
+/// As a surface, the photosurface of a plane is `gamma beta r` above a plane, along the motion; it is convex. The
+/// integral of section 6.2 of Pottmann, Krasauskas, Hamann, Joy, Seibold, *On piecewise linear approximation of
+/// quadratic functions* (J. Geom. Graph. 4 (2000), 31), that of the root of its Gaussian curvature, is the same integral
+/// times the share: both principal curvatures are those of the gap, seen along the normal.
+///
 /// # Accuracy
 ///
-/// The result has about three correct digits for triangles of any size: the quadrature has degree 2 on pieces smaller
-/// than half their distance. It is zero if a coordinate is not finite.
-pub(crate) fn minimum_triangles(offsets: [DVec3; 3], allowance: &Allowance) -> f64 {
+/// The relative error is at most [`MINIMUM_ERROR`] for triangles of any size: the quadrature has degree 2 on pieces
+/// smaller than half their distance. The result is zero if a coordinate is not finite.
+pub(crate) fn minimum_triangles(
+    offsets: [DVec3; 3],
+    allowance: &Allowance,
+    motion: Option<&Motion>,
+) -> f64 {
     let largest = offsets.iter().fold(0.0, |largest: f64, offset| {
         largest.max(offset.abs().max_element())
     });
@@ -68,73 +78,32 @@ pub(crate) fn minimum_triangles(offsets: [DVec3; 3], allowance: &Allowance) -> f
         return 0.0;
     }
     let half = 0.5 * height_times_twice_area / AREA_OF_GAP;
+    let share = |m: DVec3| match motion {
+        Some(motion) => motion.share(twice_area, m.normalize()),
+        None => 1.0,
+    };
+    let is_steep = motion.is_some();
     match allowance {
         Allowance::Everywhere(allowed) => {
-            times_two_to(half * mean_inverse_square([a, b, c], 0, &|_| 1.0), exponent) / allowed
+            let mean = mean_inverse_square([a, b, c], 0, is_steep, &share);
+            times_two_to(half * mean, exponent) / allowed
         }
         Allowance::Angle { .. } => {
-            let inverse = |m: DVec3| 1.0 / allowance.between(&[scaled(m, exponent)]);
-            times_two_to(half * mean_inverse_square([a, b, c], 0, &inverse), exponent)
+            let weight = |m: DVec3| share(m) / allowance.between(&[scaled(m, exponent)]);
+            let mean = mean_inverse_square([a, b, c], 0, is_steep, &weight);
+            times_two_to(half * mean, exponent)
         }
     }
 }
 
-/// About how many triangles a triangle will be divided into; the corners are offsets from the observer in the rest
-/// frame.
-///
-/// A polygon with `b` points on its boundary and `i` points inside has `b - 2 + 2 i` triangles. The number `b` is
-/// known; the points inside add about as many triangles as theory asks for.
-pub(crate) fn predicted_pieces(offsets: [DVec3; 3], allowance: &Allowance) -> f64 {
-    let [a, b, c] = offsets;
-    let sides = [(a, b), (b, c), (c, a)];
-    let boundary = sides.map(|(from, to)| predicted_edge_pieces(from, to, allowance));
-    let allowed = allowance.between(&offsets);
-    let inside = if triangle_gap(a, b, c) <= allowed {
-        0.0
-    } else {
-        pieces_inside(offsets, minimum_triangles(offsets, allowance), allowance)
-    };
-    boundary.iter().sum::<f64>() - 2.0 + inside
-}
-
-/// About how many triangles the points inside add when a triangle is divided. Usually this is about `minimum`, the
-/// number that theory asks for. If the observer is in the triangle's plane or next to it, it is the number that a chart
-/// flatter than the sky needs.
-pub(super) fn pieces_inside(offsets: [DVec3; 3], minimum: f64, allowance: &Allowance) -> f64 {
-    let inside = TYPICAL_RATIO * minimum;
-    let Some(plane) = Plane::new(offsets) else {
-        return inside;
-    };
-    let [a, b, c] = offsets;
-    let places = [a, b, c, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5];
-    let allowed = places.map(|place| allowance.between(&[place]));
-    let smallest = allowed.into_iter().fold(f64::INFINITY, f64::min);
-    let chart = Chart::new(plane, allowance, smallest, 0);
-    if chart.height == plane.height && chart.power == 0.0 {
-        return inside;
-    }
-    let raised = plane.away * (chart.height - plane.height);
-    let weight = |raised_offset: DVec3| {
-        let offset = raised_offset - raised;
-        chart.effective_height(plane.place(offset)) / allowance.between(&[offset])
-    };
-    let offsets = offsets.map(|offset| offset + raised);
-    let largest = offsets.iter().fold(0.0, |largest: f64, offset| {
-        largest.max(offset.abs().max_element())
-    });
-    if !(largest > 0.0 && offsets.iter().all(|offset| offset.is_finite())) {
-        return inside;
-    }
-    // As in `minimum_triangles`, nothing overflows at unit size; here the size cancels.
-    let exponent = exponent(DVec3::splat(largest));
-    let [a, b, c] = offsets.map(|offset| scaled(offset, -exponent));
-    let area = 0.5 * (b - a).cross(c - a).length();
-    let weight = |unit_offset: DVec3| weight(scaled(unit_offset, exponent));
-    FLAT_RATIO * area / AREA_OF_GAP * mean_inverse_square([a, b, c], 0, &weight)
-}
-
-/// The mean of `weight / r^2` over a triangle; `r` is the distance from the observer at the origin.
-fn mean_inverse_square([a, b, c]: [DVec3; 3], halvings: u32, weight: &dyn Fn(DVec3) -> f64) -> f64 {
+/// The mean of `weight / r^2` over a triangle; `r` is the distance from the observer at the origin. Pieces over which a
+/// steep weight changes are halved as well.
+pub(super) fn mean_inverse_square(
+    [a, b, c]: [DVec3; 3],
+    halvings: u32,
+    is_steep: bool,
+    weight: &dyn Fn(DVec3) -> f64,
+) -> f64 {
     let edges =
         [(a, b, c), (b, c, a), (c, a, b)].map(|(p, q, r)| ((q - p).length_squared(), p, q, r));
     let longest = edges
@@ -147,11 +116,22 @@ fn mean_inverse_square([a, b, c]: [DVec3; 3], halvings: u32, weight: &dyn Fn(DVe
     // This branch also ends the recursion where a coordinate is NaN.
     if !(longest.0 > SMALL * SMALL * nearest) || halvings == MAX_HALVINGS {
         let floor = f64::MIN_POSITIVE.sqrt();
-        return middles
-            .iter()
-            .map(|m| weight(*m) / m.length_squared().max(floor))
-            .sum::<f64>()
-            / 3.0;
+        let weights = middles.map(weight);
+        let changes = || {
+            let (low, high) = [a, b, c]
+                .map(weight)
+                .into_iter()
+                .chain(weights)
+                .fold((f64::INFINITY, 0.0f64), |(low, high), weight| {
+                    (low.min(weight), high.max(weight))
+                });
+            high > STEEP * low
+        };
+        if !(is_steep && halvings < MAX_HALVINGS_OF_SHARE && changes()) {
+            let values = middles.iter().zip(weights);
+            let values = values.map(|(m, weight)| weight / m.length_squared().max(floor));
+            return values.sum::<f64>() / 3.0;
+        }
     }
     let &(longest, p, q, r) = longest;
     let width = (q - p).cross(r - p).length() / longest.sqrt();
@@ -176,8 +156,8 @@ fn mean_inverse_square([a, b, c]: [DVec3; 3], halvings: u32, weight: &dyn Fn(DVe
         // Each part is computed on its own, because one of them may be tiny.
         parts = [(m - p).length() / length, (q - m).length() / length];
     }
-    parts[0] * mean_inverse_square([p, m, r], halvings + 1, weight)
-        + parts[1] * mean_inverse_square([m, q, r], halvings + 1, weight)
+    parts[0] * mean_inverse_square([p, m, r], halvings + 1, is_steep, weight)
+        + parts[1] * mean_inverse_square([m, q, r], halvings + 1, is_steep, weight)
 }
 
 /// The mean of `weight / r^2` over a sliver: its longest edge goes from `p` to `q`, and the third corner `r` is next to
@@ -223,7 +203,10 @@ fn mean_along(
 mod tests {
     use std::cell::Cell;
 
+    use super::super::triangle_gap;
     use super::*;
+    use crate::light_cone::PhotosurfaceMap;
+    use crate::spacetime::Velocity;
 
     /// In the past slivers were halved into slivers side by side, a million of them for one facet.
     #[test]
@@ -242,7 +225,7 @@ mod tests {
                 1.0
             };
             let strip = corners(w).map(|triangle| triangle.map(|(x, y)| DVec3::new(x, y, d)));
-            let means = strip.map(|triangle| mean_inverse_square(triangle, 0, &count));
+            let means = strip.map(|triangle| mean_inverse_square(triangle, 0, false, &count));
             assert!(taken.get() < 5_000, "{w:e} at {d:e}: {}", taken.get());
             let (found, expected) = (0.5 * (means[0] + means[1]), (1.0 / d).atan() / d);
             assert!(
@@ -271,7 +254,7 @@ mod tests {
                 [corner(-1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
             ];
             let found: f64 = triangles
-                .map(|t| minimum_triangles(t, &Allowance::Everywhere(1.0 / AREA_OF_GAP)))
+                .map(|t| minimum_triangles(t, &Allowance::Everywhere(1.0 / AREA_OF_GAP), None))
                 .iter()
                 .sum();
             assert!(
@@ -289,77 +272,230 @@ mod tests {
             DVec3::new(0.9, -0.5, 0.25),
             DVec3::new(0.0, 0.9, 0.5),
         ];
-        let expected = minimum_triangles(corners, &Allowance::Everywhere(1e-3));
+        let expected = minimum_triangles(corners, &Allowance::Everywhere(1e-3), None);
         for exponent in [-1000, -600, -200, 200, 600, 1023] {
             let scale = 2f64.powi(exponent);
             let found = minimum_triangles(
                 corners.map(|corner| corner * scale),
                 &Allowance::Everywhere(1e-3 * scale),
+                None,
             );
             assert_eq!(found, expected, "2^{exponent}");
         }
         let far = corners.map(|corner| corner * f64::MAX);
         assert_eq!(
-            minimum_triangles(far, &Allowance::Everywhere(1e-3)),
+            minimum_triangles(far, &Allowance::Everywhere(1e-3), None),
             f64::INFINITY
         );
         assert_eq!(
             minimum_triangles(
                 [DVec3::X, DVec3::Y, DVec3::INFINITY],
-                &Allowance::Everywhere(1e-3)
+                &Allowance::Everywhere(1e-3),
+                None
             ),
             0.0
         );
         assert_eq!(
             minimum_triangles(
                 [DVec3::X, DVec3::Y, DVec3::NAN],
-                &Allowance::Everywhere(1e-3)
+                &Allowance::Everywhere(1e-3),
+                None
             ),
             0.0
         );
     }
 
-    /// In the past squares also overflowed for an observer next to the triangle's plane, and NaN was halved again and
-    /// again.
     #[test]
-    fn pieces_in_flat_charts_go_with_the_size_of_a_triangle() {
-        let corners = [
-            DVec3::new(-0.9, -0.5, 1e-6),
-            DVec3::new(0.9, -0.5, 1e-6),
-            DVec3::new(0.0, 0.9, 1e-6),
-        ];
-        let pieces = |scale: f64| {
-            let corners = corners.map(|corner| corner * scale);
-            pieces_inside(corners, 0.0, &Allowance::Everywhere(1e-3 * scale))
-        };
-        let expected = pieces(1.0);
-        assert!(expected > 10.0, "{expected}");
-        for exponent in [-200, 200] {
-            let found = pieces(2f64.powi(exponent));
-            assert!(
-                (found / expected - 1.0).abs() < 1e-9,
-                "2^{exponent}: {found} {expected}"
-            );
-        }
+    fn what_is_no_number_is_halved_no_further() {
         let taken = Cell::new(0);
         let count = |_: DVec3| {
             taken.set(taken.get() + 1);
             1.0
         };
-        mean_inverse_square([DVec3::NAN, DVec3::X, DVec3::Y], 0, &count);
+        mean_inverse_square([DVec3::NAN, DVec3::X, DVec3::Y], 0, false, &count);
         assert_eq!(taken.get(), 3);
-        // The computation ends even for a size that no chart can represent.
-        pieces(2f64.powi(1010));
     }
 
     #[test]
     fn planes_through_the_observer_need_no_division() {
         let flat = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        assert_eq!(minimum_triangles(flat, &Allowance::Everywhere(1e-3)), 0.0);
-        let degenerate = [DVec3::X, DVec3::X + DVec3::Y, DVec3::X - DVec3::Y];
         assert_eq!(
-            minimum_triangles(degenerate, &Allowance::Everywhere(1e-3)),
+            minimum_triangles(flat, &Allowance::Everywhere(1e-3), None),
             0.0
         );
+        let degenerate = [DVec3::X, DVec3::X + DVec3::Y, DVec3::X - DVec3::Y];
+        assert_eq!(
+            minimum_triangles(degenerate, &Allowance::Everywhere(1e-3), None),
+            0.0
+        );
+    }
+
+    /// The integral of the root of the Gaussian curvature over a photosurface, from differences of seen places alone.
+    fn by_differences(map: &PhotosurfaceMap, [a, b, c]: [DVec3; 3]) -> f64 {
+        const CELLS: u32 = 120;
+        const STEP: f64 = 1e-3;
+        let (u, v) = (b - a, c - a);
+        let mut sum = 0.0;
+        for i in 0..CELLS {
+            for j in 0..CELLS - i {
+                for (third, is_inside) in [(1.0, true), (2.0, i + j + 1 < CELLS)] {
+                    if !is_inside {
+                        continue;
+                    }
+                    let cell = f64::from(CELLS);
+                    let at = |s: f64, t: f64| {
+                        let (s, t) = (
+                            (f64::from(i) + third / 3.0) / cell + s * STEP,
+                            (f64::from(j) + third / 3.0) / cell + t * STEP,
+                        );
+                        map.seen_position(a + u * s + v * t)
+                    };
+                    let (here, across) = (at(0.0, 0.0), STEP * STEP);
+                    let normal = (at(1.0, 0.0) - at(-1.0, 0.0)).cross(at(0.0, 1.0) - at(0.0, -1.0));
+                    let normal = normal.normalize();
+                    let of =
+                        |s: f64, t: f64| (at(s, t) + at(-s, -t) - 2.0 * here).dot(normal) / across;
+                    let (ss, tt) = (of(1.0, 0.0), of(0.0, 1.0));
+                    let st = 0.5 * (of(1.0, 1.0) - ss - tt);
+                    sum += (ss * tt - st * st).abs().sqrt() / (2.0 * cell * cell);
+                }
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn the_minimum_of_surfaces_is_the_integral_of_the_curvature() {
+        let triangles = [
+            [[-1.0, -1.0, 0.5], [1.0, -1.0, 0.5], [0.2, 1.0, 0.5]],
+            [[0.3, -0.2, 0.4], [1.3, 0.1, 0.9], [0.5, 1.0, -0.3]],
+            [[2.0, 2.0, 1.0], [2.5, 2.0, 0.5], [2.0, 3.0, 0.0]],
+        ];
+        for triangle in triangles {
+            let triangle = triangle.map(DVec3::from);
+            for (gamma, direction) in [
+                (1.25, DVec3::Z),
+                (3.0, DVec3::X),
+                (10.0, DVec3::new(-1.0, 0.3, 0.2)),
+            ] {
+                let velocity = Velocity::from_gamma(gamma, direction).unwrap();
+                let map = PhotosurfaceMap::new(&velocity);
+                let allowance = Allowance::Everywhere(1e-3 / velocity.gamma_beta());
+                let motion = Motion::new(velocity);
+                let found = minimum_triangles(triangle, &allowance, Some(&motion));
+                let expected = by_differences(&map, triangle) / (AREA_OF_GAP * 1e-3);
+                // The differences of the reference have an error of their own.
+                let error = (found / expected - 1.0).abs();
+                assert!(
+                    error <= MINIMUM_ERROR || expected < 1e-3 && found < 1e-3,
+                    "{gamma} {direction} {triangle:?}: {found} {expected}"
+                );
+            }
+        }
+    }
+
+    /// Against a fine division of the same integrand, for triangles near and far.
+    #[test]
+    fn the_minimum_is_as_accurate_as_it_says() {
+        let velocity = Velocity::from_gamma(20.0, DVec3::new(1.0, 0.1, 0.2)).unwrap();
+        let motion = Motion::new(velocity);
+        for motion in [None, Some(&motion)] {
+            for step in 0..60 {
+                let wave = |factor: f64| (f64::from(step) * factor).sin();
+                let place = DVec3::new(1.5 * wave(1.7), 1.5 * wave(0.9), 0.1 + wave(0.31).powi(2));
+                let size = 0.8f64.powi(step % 12);
+                let corner =
+                    |f: f64| place + size * DVec3::new(wave(2.3 + f), wave(1.1 + f), wave(f));
+                let triangle = [corner(0.1), corner(0.57), corner(0.83)];
+                let [a, b, c] = triangle;
+                let normal = (b - a).cross(c - a);
+                let found = minimum_triangles(triangle, &Allowance::Everywhere(1.0), motion);
+                const CELLS: u32 = 400;
+                let mut mean = 0.0;
+                for i in 0..CELLS {
+                    for j in 0..CELLS - i {
+                        for third in [1.0, 2.0] {
+                            if third == 2.0 && i + j + 1 == CELLS {
+                                continue;
+                            }
+                            let [s, t] =
+                                [i, j].map(|k| (f64::from(k) + third / 3.0) / f64::from(CELLS));
+                            let at = a + (b - a) * s + (c - a) * t;
+                            let share = motion.map_or(1.0, |m| m.share(normal, at.normalize()));
+                            mean += share / at.length_squared() / f64::from(CELLS * CELLS);
+                        }
+                    }
+                }
+                let expected = 0.5 * a.dot(normal).abs() * mean / AREA_OF_GAP;
+                assert!(
+                    (found / expected - 1.0).abs() <= MINIMUM_ERROR,
+                    "{step} {triangle:?}: {found} {expected}"
+                );
+            }
+        }
+    }
+
+    /// Random triangulations of a plate, the best of many for each number of points: none has fewer triangles than the
+    /// minimum for its own largest gap.
+    #[test]
+    fn no_triangulation_beats_the_minimum() {
+        use spade::{DelaunayTriangulation, Point2, Triangulation};
+        let velocity = Velocity::from_gamma(1.5, DVec3::new(0.3, 0.0, -1.0)).unwrap();
+        let of_surface = Motion::new(velocity);
+        let mut state = 1u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let on_plate = |x: f64, y: f64| DVec3::new(2.0 * x - 1.0, 2.0 * y - 1.0, -0.5);
+        let plate = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| on_plate(x, y));
+        let halves = [
+            [plate[0], plate[1], plate[2]],
+            [plate[0], plate[2], plate[3]],
+        ];
+        for (sides, inside) in [(3, 6), (4, 12), (6, 30)] {
+            for motion in [None, Some(&of_surface)] {
+                let mut best = (f64::INFINITY, 0);
+                for _ in 0..300 {
+                    let mut points = DelaunayTriangulation::<Point2<f64>>::new();
+                    for i in 0..sides {
+                        let part = f64::from(i) / f64::from(sides);
+                        for (x, y) in [
+                            (part, 0.0),
+                            (1.0, part),
+                            (1.0 - part, 1.0),
+                            (0.0, 1.0 - part),
+                        ] {
+                            points.insert(Point2::new(x, y)).unwrap();
+                        }
+                    }
+                    for _ in 0..inside {
+                        points.insert(Point2::new(random(), random())).unwrap();
+                    }
+                    let gaps = points.inner_faces().map(|face| {
+                        let [a, b, c] = face.positions().map(|p| on_plate(p.x, p.y));
+                        let gap = triangle_gap(a, b, c);
+                        let [u, v, w] = super::super::triangle_gap_place(a, b, c);
+                        let worst = (a * u + b * v + c * w).normalize();
+                        gap * motion.map_or(1.0, |motion| motion.share(DVec3::Z, worst))
+                    });
+                    let largest = gaps.fold(0.0, f64::max);
+                    if largest < best.0 {
+                        best = (largest, points.num_inner_faces());
+                    }
+                }
+                let allowance = Allowance::Everywhere(best.0);
+                let minimum = halves.map(|half| minimum_triangles(half, &allowance, motion));
+                let minimum = minimum[0] + minimum[1];
+                let made = best.1 as f64;
+                assert!(
+                    minimum <= made * (1.0 + MINIMUM_ERROR),
+                    "{made} made, {minimum}"
+                );
+                assert!(minimum > 0.05 * made, "{made} made, {minimum}");
+            }
+        }
     }
 }

@@ -9,6 +9,8 @@
 //! equilateral triangles (`sky`). The rule that divides an edge depends on its two ends only (`edge`), so that
 //! neighbouring triangles always agree, bit for bit.
 
+mod across;
+mod adjacency;
 mod allowance;
 mod along;
 mod ceiling;
@@ -19,11 +21,15 @@ mod edge;
 mod edges;
 mod gap;
 mod minimum;
+mod motion;
 mod nearest;
+mod outcomes;
 mod outline;
 mod pieces;
+mod predicted;
 mod queue;
 mod refine;
+mod rims;
 mod room;
 mod sky;
 mod stretch;
@@ -36,8 +42,9 @@ pub use certificate::{Certificate, Precision};
 pub(crate) use curved::{About, Allowed, Sight, needed, triangulate};
 pub use gap::{edge_gap, triangle_gap, triangle_gap_place};
 use minimum::minimum_triangles;
-pub(crate) use minimum::predicted_pieces;
+pub(crate) use motion::Motion;
 pub(crate) use nearest::nearest_point;
+pub(crate) use predicted::predicted_pieces;
 pub(crate) use refine::{Refined, refine};
 pub(crate) use room::shares;
 pub(crate) use survey::{largest_gap, survey};

@@ -4,10 +4,14 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::adjacency::{Adjacency, Looked};
+use super::along::{PlanePoint, gap_along};
+use super::chart::Plane;
 use super::edges::{Count, Edges, canonical, divided_edges, sides};
-use super::minimum::pieces_inside;
+use super::predicted::{of_points, pieces_inside};
+use super::rims::{Judge, Rims};
 use super::survey::Survey;
-use super::{Allowance, minimum_triangles, triangle_gap};
+use super::{Allowance, Motion, minimum_triangles};
 use crate::mesh::Mesh;
 
 /// Limit on the points inside one triangle, in units of the number of triangles that theory asks for (a few more are
@@ -39,6 +43,7 @@ pub(super) struct Outline {
     pub(super) edges: Vec<Edges>,
     /// For each mesh the needs of the triangles in its survey's list `above`.
     pub(super) needs: Vec<Vec<Need>>,
+    pub(super) rims: Rims,
     /// How many additional triangles the points inside may make.
     pub(super) more: u64,
     /// How many additional triangles are predicted from points inside.
@@ -50,12 +55,13 @@ impl Outline {
     /// make at most `most_more` additional triangles. The allowance is hardly larger than necessary.
     pub(super) fn within(
         meshes: &[&Mesh],
-        found: &[Survey],
+        adjacency: &Adjacency,
         observer: DVec3,
-        allowance: &Allowance,
+        (allowance, motion): (&Allowance, Option<&Motion>),
         most_more: u64,
     ) -> Self {
-        let aiming = |looser| Self::aiming(looser, meshes, found, observer, allowance, most_more);
+        let measure = (allowance, motion);
+        let aiming = |looser| Self::aiming(looser, meshes, adjacency, observer, measure, most_more);
         let (mut too_tight, mut looser, mut step) = (1.0, 1.0, LOOSER);
         let mut outline = loop {
             if let Some(outline) = aiming(looser) {
@@ -83,9 +89,9 @@ impl Outline {
     fn aiming(
         looser: f64,
         meshes: &[&Mesh],
-        found: &[Survey],
+        adjacency: &Adjacency,
         observer: DVec3,
-        allowance: &Allowance,
+        (allowance, motion): (&Allowance, Option<&Motion>),
         most_more: u64,
     ) -> Option<Self> {
         let aimed = match looser {
@@ -94,23 +100,25 @@ impl Outline {
             _ => allowance.times(looser),
         };
         let more = Count::up_to(most_more);
-        let edges: Option<Vec<Edges>> = meshes
-            .par_iter()
-            .zip(found)
-            .map(|(mesh, found)| divided_edges(mesh, &found.above, observer, &aimed, &more))
-            .collect();
-        let edges = edges?;
-        let needs = meshes.par_iter().zip(found).zip(&edges);
-        let needs: Vec<Vec<Need>> = needs
-            .map(|((mesh, found), edges)| {
-                let corners = found
-                    .above
-                    .par_iter()
-                    .map(|&index| mesh.triangles()[index as usize]);
-                let need = |corners| Need::of(corners, mesh.positions(), observer, edges, &aimed);
-                corners.map(need).collect()
+        let edges = divided_edges(meshes, adjacency, observer, &aimed, motion, &more)?;
+        let rims = Rims::new(meshes, adjacency, &edges, observer, motion);
+        let all = adjacency.looked.par_iter().enumerate();
+        let all: Vec<Need> = all
+            .map(|(number, looked)| {
+                let mesh = meshes[looked.mesh as usize];
+                let edges = &edges[looked.mesh as usize];
+                Need::of(
+                    looked,
+                    mesh,
+                    observer,
+                    edges,
+                    (&aimed, motion),
+                    rims.judge(number),
+                )
             })
             .collect();
+        let needs = adjacency.firsts.windows(2);
+        let needs: Vec<Vec<Need>> = needs.map(|ends| all[ends[0]..ends[1]].to_vec()).collect();
         let inside = needs.iter().flatten().map(|need| need.inside).sum::<f64>();
         let is_within = inside <= more.left() as f64 || looser > LOOSEST;
         is_within.then(|| Self {
@@ -118,6 +126,7 @@ impl Outline {
             allowance: aimed,
             edges,
             needs,
+            rims,
             more: more.left(),
             inside,
         })
@@ -131,13 +140,19 @@ impl Outline {
     /// The triangles of all meshes that have to be divided, in the order of the meshes and of their triangles.
     pub(super) fn divided(&self, found: &[Survey]) -> Vec<Divided> {
         let meshes = self.needs.iter().zip(found).enumerate();
-        meshes
-            .flat_map(|(mesh, (needs, found))| {
-                let looked_at = needs.iter().zip(&found.above);
-                let divided = looked_at.filter(|(need, _)| need.is_divided);
-                divided.map(move |(&need, &index)| Divided { mesh, index, need })
+        let all = meshes.flat_map(|(mesh, (needs, found))| {
+            let looked_at = needs.iter().zip(&found.above);
+            looked_at.map(move |(&need, &index)| (mesh, index, need))
+        });
+        let divided = all.enumerate().filter_map(|(number, (mesh, index, need))| {
+            need.is_divided.then_some(Divided {
+                mesh,
+                index,
+                need,
+                number,
             })
-            .collect()
+        });
+        divided.collect()
     }
 }
 
@@ -147,6 +162,8 @@ pub(super) struct Divided {
     pub(super) mesh: usize,
     pub(super) index: u32,
     pub(super) need: Need,
+    /// Its number in the list [`Adjacency::looked`].
+    pub(super) number: usize,
 }
 
 /// The needs of one triangle of the survey's list `above`.
@@ -156,6 +173,10 @@ pub(super) struct Need {
     pub(super) is_divided: bool,
     /// The gap of the undivided triangle, in the rest frame.
     pub(super) gap: f64,
+    /// The same as surfaces, as a gap.
+    pub(super) surface: f64,
+    /// What it costs that no ray must pass the undivided triangle, as a gap; zero if rays may pass it.
+    pub(super) cut: f64,
     /// The fewest triangles that theory allows for it.
     minimum: f64,
     /// About how many additional triangles the points inside will make.
@@ -164,29 +185,49 @@ pub(super) struct Need {
 
 impl Need {
     fn of(
-        corners: [u32; 3],
-        positions: &[DVec3],
+        looked: &Looked,
+        mesh: &Mesh,
         observer: DVec3,
         edges: &Edges,
-        allowance: &Allowance,
+        (allowance, motion): (&Allowance, Option<&Motion>),
+        judge: Option<&Judge>,
     ) -> Self {
+        let (positions, corners) = (mesh.positions(), mesh.triangles()[looked.index as usize]);
         let offsets = corners.map(|corner| positions[corner as usize] - observer);
-        let [a, b, c] = offsets;
-        let gap = triangle_gap(a, b, c);
-        let fits = gap <= allowance.between(&offsets);
+        let gap = looked.gap;
+        let allowed = allowance.between(&offsets);
+        let (mut surface, mut cut) = (gap, 0.0);
+        if let Some(judge) = judge {
+            let bound = Plane::new(offsets).map_or(f64::INFINITY, |plane| {
+                let points = offsets.map(|offset| PlanePoint::new(&plane, offset));
+                let [a, b, c] = &points;
+                let along = gap_along(&plane, [a, b, c]);
+                judge.bound(&along, [a, b, c], [DVec3::X, DVec3::Y, DVec3::Z])
+            });
+            surface = gap.min(bound);
+            if bound == f64::INFINITY {
+                cut = judge.cut(offsets);
+            }
+        }
+        let fits = surface <= allowed;
         let is_cut = |side: [u32; 2]| edges.divisions.contains_key(&canonical(side, positions));
         let is_divided = !fits || sides(corners).into_iter().any(is_cut);
         let minimum = match is_divided {
-            true => minimum_triangles(offsets, allowance),
+            true => minimum_triangles(offsets, allowance, None),
             false => 0.0,
         };
         let inside = match fits {
             true => 0.0,
-            false => pieces_inside(offsets, minimum, allowance),
+            false => {
+                pieces_inside(offsets, minimum, allowance)
+                    * of_points(offsets, minimum, allowance, motion)
+            }
         };
         Self {
             is_divided,
             gap,
+            surface,
+            cut,
             minimum,
             inside,
         }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// A point on the boundary of the source triangle.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Corner {
     /// Weights of the source triangle's corners.
     pub(super) weights: DVec3,
@@ -23,6 +23,10 @@ pub(super) struct Pieces {
     pub(super) triangles: Vec<[u32; 3]>,
     /// The largest gap of an output triangle, in the rest frame.
     pub(super) gap: f64,
+    /// A bound on the same as surfaces, as a gap.
+    pub(super) surface: f64,
+    /// What it costs that rays must not pass some of the output triangles, as a gap; zero if there are none.
+    pub(super) cut: f64,
     /// Whether the gap of every output triangle is within the allowance.
     pub(super) complete: bool,
     /// Whether more points would have been added if the grant had been larger.

@@ -3,14 +3,13 @@
 use glam::{DVec3, DVec4, Vec2, Vec4};
 use rayon::prelude::*;
 
-use super::Allowance;
-use super::edge::{EDGE_SHARE, point_between};
-use super::edges::{Edges, Origin, canonical, sides};
-use super::outline::{Divided, Need, Outline};
-use super::pieces::{Corner, Pieces};
-use super::room::Room;
-use super::sky::{Grant, divide};
+use super::adjacency::Adjacency;
+use super::edge::{EDGE_SHARE, fewest_pieces, point_between, rim_gap_share};
+use super::edges::{Edges, LARGEST, Origin};
+use super::outcomes::{Made, Outcome, make};
+use super::outline::Need;
 use super::survey::{Survey, survey};
+use super::{Allowance, Motion, edge_gap, minimum_triangles};
 use crate::mesh::Mesh;
 
 /// A refined mesh and its largest gap.
@@ -22,8 +21,12 @@ pub(crate) struct Refined {
     pub(crate) gap: f64,
     /// Whether the gap of every triangle is within the allowance.
     pub(crate) complete: bool,
+    /// A bound on the same as surfaces, as a gap.
+    pub(crate) surface_gap: f64,
     /// The fewest triangles that theory allows for the allowance `whole` of [`refine`].
     pub(crate) minimum_triangles: f64,
+    /// The same with at least one triangle for each triangle of the mesh.
+    pub(crate) minimum_with_source: f64,
 }
 
 /// Refines the meshes of one object until the gap of every triangle is within the allowance. The meshes and the
@@ -44,131 +47,99 @@ pub(crate) fn refine(
     allowance: &Allowance,
     whole: &Allowance,
     most_more: u64,
+    motion: Option<&Motion>,
 ) -> Vec<Refined> {
     // A triangle whose cheap bound is this small is never divided, and neither are its edges, because their gaps are
-    // not larger.
+    // not larger, whatever a neighbour asks for.
     let small = match allowance {
-        Allowance::Everywhere(allowed) => EDGE_SHARE * allowed,
+        Allowance::Everywhere(allowed) => LARGEST * EDGE_SHARE * allowed,
         Allowance::Angle { .. } => 0.0,
     };
+    let small_edge = |offsets: &[DVec3]| 0.5 * EDGE_SHARE * allowance.between(offsets);
     let found: Vec<Survey> = meshes
         .par_iter()
-        .map(|mesh| survey(mesh, observer, small, whole))
+        .map(|mesh| survey(mesh, observer, small, whole, motion))
         .collect();
-    let outline = Outline::within(meshes, &found, observer, allowance, most_more);
-    let divided: Vec<Divided> = outline.divided(&found);
-    let weights = divided.iter().map(|divided| divided.need.inside);
-    let mut room = Room::new(weights.collect(), outline.more / 2);
-    let mut outcomes: Vec<Option<Outcome>> = divided.iter().map(|_| None).collect();
-    loop {
-        let turn = room.turn();
-        if turn.is_empty() {
-            break;
-        }
-        let is_last = room.is_last_turn();
-        let made: Vec<Outcome> = turn
-            .par_iter()
-            .map(|&(number, granted)| {
-                let Divided { mesh, index, need } = divided[number];
-                let corners = meshes[mesh].triangles()[index as usize];
-                let (positions, edges) = (meshes[mesh].positions(), &outline.edges[mesh]);
-                let (boundary, points) = boundary(corners, positions, observer, edges);
-                let pieces = divide(
-                    corners.map(|corner| positions[corner as usize]),
-                    observer,
-                    &points,
-                    &outline.allowance,
-                    need.max_points(points.len()),
-                    Grant { granted, is_last },
-                );
-                Outcome { boundary, pieces }
-            })
-            .collect();
-        for ((number, _), outcome) in turn.into_iter().zip(made) {
-            room.used(number, outcome.pieces.inside.len(), outcome.pieces.is_short);
-            outcomes[number] = Some(outcome);
-        }
-    }
+    let mut adjacency = Adjacency::new(meshes, &found, observer, motion, small_edge);
+    let off_plane = motion.map_or(0.0, |motion| motion.as_gap(adjacency.off_plane(meshes)));
+    let sources = with_sides(meshes, &adjacency, observer, whole, motion);
+    let Made { outline, outcomes } = make(
+        meshes,
+        &mut adjacency,
+        &found,
+        observer,
+        (allowance, motion),
+        most_more,
+    );
 
-    let mut outcomes = outcomes.into_iter().flatten();
+    let mut outcomes = outcomes.into_iter();
     let (looser, needs) = (outline.looser, outline.needs);
-    let parts = found.into_iter().zip(outline.edges).zip(needs);
+    let parts = found.into_iter().zip(outline.edges).zip(needs).zip(sources);
     let parts: Vec<_> = parts
-        .map(|((found, edges), needs)| {
+        .map(|(((found, edges), needs), sides)| {
             let divided = needs.iter().filter(|need| need.is_divided).count();
             let outcomes: Vec<Outcome> = outcomes.by_ref().take(divided).collect();
-            (found, edges, needs, outcomes)
+            (found, edges, needs, outcomes, sides)
         })
         .collect();
     let refined = meshes.par_iter().zip(parts);
     refined
-        .map(|(mesh, (found, edges, needs, outcomes))| {
+        .map(|(mesh, (found, edges, needs, outcomes, sides))| {
             let mut refined = Refined {
                 mesh: (*mesh).clone(),
                 gap: found.gap,
                 complete: looser == 1.0,
+                surface_gap: found.gap,
                 minimum_triangles: found.minimum_triangles,
+                minimum_with_source: found.minimum_with_source + sides,
             };
             if !found.above.is_empty() {
                 assemble(mesh, &found.above, &needs, outcomes, edges, &mut refined);
             }
+            refined.surface_gap += off_plane;
             refined
         })
         .collect()
 }
 
-/// A divided triangle.
-struct Outcome {
-    /// Indices of the vertices on the boundary, counter-clockwise from the first corner on.
-    boundary: Vec<u32>,
-    pieces: Pieces,
-}
-
-/// The boundary of a triangle, counter-clockwise from the first corner on: the vertices' indices, and the vertices as
-/// [`Corner`]s.
-fn boundary(
-    corners: [u32; 3],
-    positions: &[DVec3],
+/// How many triangles more than [`Survey::minimum_with_source`] says each mesh needs because the sides of its triangles
+/// have to be divided: a polygon with `b` points on its boundary has at least `b - 2` triangles.
+fn with_sides(
+    meshes: &[&Mesh],
+    adjacency: &Adjacency,
     observer: DVec3,
-    edges: &Edges,
-) -> (Vec<u32>, Vec<Corner>) {
-    let corner_positions = corners.map(|corner| positions[corner as usize]);
-    let mut boundary = vec![];
-    let mut points = vec![];
-    for (number, side) in sides(corners).into_iter().enumerate() {
-        let (from, to) = (number, (number + 1) % 3);
-        let at = |weights: DVec3, position: DVec3, sides: u8| Corner {
-            weights,
-            offset: position - observer,
-            sides,
-        };
-        let unit =
-            |corner: usize| DVec3::from_array([0, 1, 2].map(|i| f64::from(u8::from(i == corner))));
-        boundary.push(side[0]);
-        points.push(at(
-            unit(from),
-            corner_positions[from],
-            1 << number | 1 << ((number + 2) % 3),
-        ));
-        let key = canonical(side, positions);
-        let Some((parameters, first)) = edges.divisions.get(&key) else {
-            continue;
-        };
-        let [p, q] = key.map(|vertex| positions[vertex as usize]);
-        let forward = key == side;
-        let mut order: Vec<usize> = (0..parameters.len()).collect();
-        if !forward {
-            order.reverse();
+    whole: &Allowance,
+    motion: Option<&Motion>,
+) -> Vec<f64> {
+    let more = adjacency.looked.par_iter().map(|looked| {
+        let mesh = meshes[looked.mesh as usize];
+        let corners = mesh.triangles()[looked.index as usize];
+        let offsets = corners.map(|corner| mesh.positions()[corner as usize] - observer);
+        let [a, b, c] = offsets;
+        let pieces = [(a, b), (b, c), (c, a)].into_iter().zip(looked.is_free);
+        let pieces = pieces.map(|((from, to), is_free)| {
+            // As a surface, nothing has to be divided on an edge beyond which the plane goes on.
+            if is_free {
+                return 1.0;
+            }
+            let allowed = |places: &[DVec3], along: DVec3| {
+                let share = motion.map_or(1.0, |motion| rim_gap_share(motion, places, along));
+                whole.between(places) / share
+            };
+            fewest_pieces(from, to, edge_gap(from, to), &allowed)
+        });
+        let fewest = pieces.sum::<f64>() - 2.0;
+        if fewest <= 1.0 {
+            return 0.0;
         }
-        for index in order {
-            let parameter = parameters[index];
-            let from_weight = if forward { 1.0 - parameter } else { parameter };
-            let weights = unit(from) * from_weight + unit(to) * (1.0 - from_weight);
-            boundary.push(first + index as u32);
-            points.push(at(weights, point_between(p, q, parameter), 1 << number));
-        }
-    }
-    (boundary, points)
+        let counted = minimum_triangles(offsets, whole, motion).max(1.0);
+        (fewest - counted).max(0.0)
+    });
+    let more: Vec<f64> = more.collect();
+    let of_meshes = adjacency.firsts.windows(2);
+    of_meshes
+        .map(|ends| more[ends[0]..ends[1]].iter().sum())
+        .collect()
 }
 
 /// Assembles a mesh from the outcomes of the triangles in `looked_at` and from all its other triangles, in the order of
@@ -197,12 +168,20 @@ fn assemble(
         } else {
             None
         };
-        let Some(Outcome { boundary, pieces }) = outcome else {
+        let Some(Outcome {
+            boundary,
+            pieces,
+            surface,
+            ..
+        }) = outcome
+        else {
             refined.gap = refined.gap.max(need.gap);
+            refined.surface_gap = refined.surface_gap.max(need.surface);
             triangles.push(corners);
             continue;
         };
         refined.gap = refined.gap.max(pieces.gap);
+        refined.surface_gap = refined.surface_gap.max(surface);
         refined.complete &= pieces.complete;
         let first = (positions.len() + origins.len()) as u32;
         let index = |local: u32| match boundary.get(local as usize) {
@@ -311,7 +290,14 @@ mod tests {
             .and_then(|mesh| mesh.with_colors(positions.iter().map(color).collect()))
             .unwrap();
         let allowance = Allowance::Everywhere(1e-4);
-        let mut refined = refine(&[&mesh], DVec3::ZERO, &allowance, &allowance, u64::MAX);
+        let mut refined = refine(
+            &[&mesh],
+            DVec3::ZERO,
+            &allowance,
+            &allowance,
+            u64::MAX,
+            None,
+        );
         let refined = refined.pop().unwrap();
         assert!(refined.complete && refined.gap <= 1e-4);
         let made = refined.mesh;
@@ -345,7 +331,14 @@ mod tests {
         for allowed in [1e-9, 1e-300] {
             let allowance = Allowance::Everywhere(allowed);
             for most_more in [50, 200, 1000, 5000, 20_000] {
-                let refined = refine(&[&mesh], DVec3::ZERO, &allowance, &allowance, most_more);
+                let refined = refine(
+                    &[&mesh],
+                    DVec3::ZERO,
+                    &allowance,
+                    &allowance,
+                    most_more,
+                    None,
+                );
                 let more = refined[0].mesh.triangles().len() as u64 - 2;
                 let used = format!("{more} of {most_more} at {allowed:e}");
                 assert!(more <= most_more && 2 * more >= most_more, "{used}");

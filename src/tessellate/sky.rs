@@ -17,11 +17,12 @@ use spade::{
     mitigate_underflow,
 };
 
-use super::along::{PlanePoint, gap_along};
+use super::along::{Along, PlanePoint, gap_along};
 use super::chart::{Chart, Plane};
 use super::gap::triangle_gap_place;
 use super::pieces::{Corner, Pieces};
 use super::queue::{Queue, Task};
+use super::rims::Judge;
 use super::strip::strip;
 use super::{Allowance, triangle_gap};
 
@@ -58,12 +59,18 @@ pub(super) fn divide(
     positions: [DVec3; 3],
     observer: DVec3,
     boundary: &[Corner],
-    allowance: &Allowance,
+    (allowance, judge): (&Allowance, Option<&Judge>),
     max_points: usize,
     Grant { granted, is_last }: Grant,
 ) -> Pieces {
+    let strip = || {
+        let pieces = strip(boundary, allowance);
+        // No ray of a neighbour in the same plane must pass a strip.
+        let cut = judge.map_or(0.0, |_| pieces.gap);
+        Pieces { cut, ..pieces }
+    };
     let Some(plane) = Plane::new(positions.map(|position| position - observer)) else {
-        return strip(boundary, allowance);
+        return strip();
     };
     let (mut looser, mut step) = (1.0, LOOSER);
     let mut best: Option<Pieces> = None;
@@ -73,7 +80,14 @@ pub(super) fn divide(
             _ => allowance.times(looser),
         };
         let limits = [max_points, granted];
-        let made = divide_on_sky(plane, positions, observer, boundary, &aimed, limits);
+        let made = divide_on_sky(
+            plane,
+            positions,
+            observer,
+            boundary,
+            (&aimed, judge),
+            limits,
+        );
         let Some(pieces) = made else { break };
         let (is_complete, is_short) = (pieces.complete, pieces.is_short);
         if looser == 1.0 && (is_complete || !is_short) {
@@ -95,7 +109,7 @@ pub(super) fn divide(
         looser *= step;
         step *= LOOSER;
     }
-    best.unwrap_or_else(|| strip(boundary, allowance))
+    best.unwrap_or_else(strip)
 }
 
 /// Divides the triangle with one fixed allowance; `None` if faces are turned over in every chart. The two limits are
@@ -105,7 +119,7 @@ fn divide_on_sky(
     positions: [DVec3; 3],
     observer: DVec3,
     boundary: &[Corner],
-    allowance: &Allowance,
+    (allowance, judge): (&Allowance, Option<&Judge>),
     [max_points, granted]: [usize; 2],
 ) -> Option<Pieces> {
     let smallest = boundary
@@ -114,7 +128,7 @@ fn divide_on_sky(
     let mut best: Option<Pieces> = None;
     for flattening in 0..CHARTS {
         let chart = Chart::new(plane, allowance, smallest, flattening);
-        let mut front = match Front::new(chart, positions, observer, boundary, allowance) {
+        let mut front = match Front::new(chart, positions, observer, boundary, (allowance, judge)) {
             Some(front) => front,
             None => continue,
         };
@@ -154,6 +168,8 @@ struct Front<'a> {
     positions: [DVec3; 3],
     observer: DVec3,
     allowance: &'a Allowance,
+    /// Under the surface measure.
+    judge: Option<&'a Judge>,
     triangulation: ConstrainedDelaunayTriangulation<Point2<f64>>,
     /// The vertices of the triangulation as points of the plane. They are kept outside the triangulation, so that its
     /// own vertices are small and close together in memory.
@@ -173,13 +189,14 @@ impl<'a> Front<'a> {
         positions: [DVec3; 3],
         observer: DVec3,
         boundary: &'a [Corner],
-        allowance: &'a Allowance,
+        (allowance, judge): (&'a Allowance, Option<&'a Judge>),
     ) -> Option<Self> {
         let mut front = Self {
             chart,
             positions,
             observer,
             allowance,
+            judge,
             triangulation: ConstrainedDelaunayTriangulation::new(),
             points_in_plane: boundary
                 .iter()
@@ -287,16 +304,37 @@ impl<'a> Front<'a> {
         let along = gap_along(&self.chart.plane, points_in_plane);
         let is_small = along.bound <= allowed
             || !along.is_sharp && triangle_gap(offsets[0], offsets[1], offsets[2]) <= allowed;
-        if is_small {
+        if is_small || self.across(&along, indices) <= allowed {
             return None;
         }
         // In the gap metric an equilateral triangle with the circumradius R has the gap R^2 / 2 at its middle and the
         // side sqrt(3) R. The metric is evaluated at one corner, picked by the sum of the indices: the newest corner
         // would lie on the same side too often.
         let corner = (indices[0] + indices[1] + indices[2]) % 3;
+        let allowed = self.allowed(allowed, offsets[corner], self.weights[indices[corner]]);
         let ideal = 6.0 * AIM * allowed / self.chart.metric([a, b, c][corner]);
         let shortest = sides[0].min(sides[1]).min(sides[2]);
         Some(((shortest - ideal).abs() / shortest.min(ideal)) as f32)
+    }
+
+    /// The bound of the surface measure on a face, as a gap; infinity if the face has to count with its gap.
+    fn across(&self, along: &Along, indices: [usize; 3]) -> f64 {
+        match self.judge {
+            Some(judge) => judge.bound(
+                along,
+                indices.map(|index| &self.points_in_plane[index]),
+                indices.map(|index| self.weights[index]),
+            ),
+            None => f64::INFINITY,
+        }
+    }
+
+    /// The gap that a face near a place may have, where `allowed` is allowed to points.
+    fn allowed(&self, allowed: f64, offset: DVec3, weights: DVec3) -> f64 {
+        match self.judge {
+            Some(judge) => judge.allowed(allowed, offset, weights),
+            None => allowed,
+        }
     }
 
     /// Whether a face is outside the source triangle. All three vertices of such a face are on one side of the source
@@ -358,7 +396,9 @@ impl<'a> Front<'a> {
         let center = circumcenter(a, b, c);
         let to_center = (center - middle).dot(inward);
 
-        let allowed = self.allowance.between(&[self.offset_near(middle)]);
+        let weights = self.chart.plane.weights(self.chart.chart_to_place(middle));
+        let offset = mix(self.positions, weights) - self.observer;
+        let allowed = self.allowed(self.allowance.between(&[offset]), offset, weights);
         let height = |metric: f64| {
             let radius = (2.0 * AIM * allowed / metric).sqrt();
             if radius > half {
@@ -410,11 +450,6 @@ impl<'a> Front<'a> {
         }
     }
 
-    fn offset_near(&self, w: DVec2) -> DVec3 {
-        let weights = self.chart.plane.weights(self.chart.chart_to_place(w));
-        mix(self.positions, weights) - self.observer
-    }
-
     /// The pieces; `None` if they do not cover the source triangle exactly once, which rounding may cause.
     ///
     /// They cover it exactly once if no face is turned over and the boundary of all faces together is the boundary of
@@ -455,9 +490,18 @@ impl<'a> Front<'a> {
             let points_in_plane = vertices.map(|vertex| &self.points_in_plane[vertex]);
             let offsets = points_in_plane.map(|point| point.offset);
             // The cheap bound shows for most faces that their gap is smaller than one measured before.
-            let bound = gap_along(&self.chart.plane, points_in_plane).bound;
-            if !(bound <= pieces.gap && bound <= self.allowance.between(&offsets)) {
-                pieces.measure(offsets, self.allowance);
+            let along = gap_along(&self.chart.plane, points_in_plane);
+            let across = self.across(&along, vertices);
+            if let Some(judge) = self.judge
+                && across == f64::INFINITY
+            {
+                pieces.cut = pieces.cut.max(judge.cut(offsets));
+            }
+            let bound = along.bound;
+            if bound <= pieces.gap && bound <= self.allowance.between(&offsets) {
+                pieces.surface = pieces.surface.max(bound.min(across));
+            } else {
+                pieces.measure(offsets, self.allowance, across);
             }
             pieces.triangles.push(vertices.map(|vertex| vertex as u32));
         }
@@ -466,11 +510,14 @@ impl<'a> Front<'a> {
 }
 
 impl Pieces {
-    /// Includes the gap of one output triangle, whose corners are offsets from the observer.
-    pub(super) fn measure(&mut self, offsets: [DVec3; 3], allowance: &Allowance) {
+    /// Includes the gap of one output triangle, whose corners are offsets from the observer, and its bound as surfaces,
+    /// as a gap.
+    pub(super) fn measure(&mut self, offsets: [DVec3; 3], allowance: &Allowance, across: f64) {
         let gap = triangle_gap(offsets[0], offsets[1], offsets[2]);
+        let surface = gap.min(across);
         self.gap = self.gap.max(gap);
-        self.complete &= gap <= allowance.between(&offsets);
+        self.surface = self.surface.max(surface);
+        self.complete &= surface <= allowance.between(&offsets);
     }
 }
 

@@ -47,7 +47,7 @@ pub(super) fn strip(boundary: &[Corner], allowance: &Allowance) -> Pieces {
     let (mut low, mut up) = (1, 1);
     let mut add = |triangle: [u32; 3]| {
         let offsets = triangle.map(|index| boundary[index as usize].offset);
-        pieces.measure(offsets, allowance);
+        pieces.measure(offsets, allowance, f64::INFINITY);
         pieces.triangles.push(triangle);
     };
     add([lower[0], lower[1], upper[1]]);

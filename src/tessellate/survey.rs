@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::ceiling::{Ceilings, ceilings};
 use super::minimum::AREA_OF_GAP;
-use super::{Allowance, minimum_triangles, triangle_gap};
+use super::{Allowance, Motion, minimum_triangles, triangle_gap};
 use crate::mesh::{Mesh, Places};
 
 /// Number of triangles that a thread processes at a time. It is constant, so that sums do not depend on the number of
@@ -28,18 +28,26 @@ pub(crate) struct Survey {
     pub(crate) above: Vec<u32>,
     /// An upper bound on the largest gap `e` of all other triangles, in the rest frame.
     pub(crate) gap: f64,
-    /// The fewest triangles that theory allows: the sum of [`minimum_triangles`] over all triangles, each counted as at
-    /// least one.
+    /// The fewest triangles that theory allows for any mesh: the sum of [`minimum_triangles`] over all triangles.
     pub(crate) minimum_triangles: f64,
+    /// The same with each triangle counted as at least one.
+    pub(crate) minimum_with_source: f64,
 }
 
 /// Surveys a mesh: which triangles may have gaps above `limit`, and how many triangles are needed to keep all gaps
-/// within `allowance`. The mesh, the position `observer` and the gaps are in the rest frame.
+/// within `allowance`; of points, or, where a motion is given, of surfaces. The mesh, the position `observer` and the
+/// gaps are in the rest frame.
 ///
 /// The result is the same for any number of threads. The gap of a triangle is the smaller one of [`triangle_gap`] and
 /// its cheap bound, and the result is the largest of all. A triangle is skipped only if its cheap bound is not above a
 /// gap found before, so skipping never changes the result.
-pub(crate) fn survey(mesh: &Mesh, observer: DVec3, limit: f64, allowance: &Allowance) -> Survey {
+pub(crate) fn survey(
+    mesh: &Mesh,
+    observer: DVec3,
+    limit: f64,
+    allowance: &Allowance,
+    motion: Option<&Motion>,
+) -> Survey {
     let enough = match allowance {
         Allowance::Everywhere(allowed) => 2.0 * AREA_OF_GAP * allowed,
         Allowance::Angle { .. } => 0.0,
@@ -50,38 +58,47 @@ pub(crate) fn survey(mesh: &Mesh, observer: DVec3, limit: f64, allowance: &Allow
     let jobs = triangles.par_chunks(TRIANGLES_PER_JOB).enumerate();
     let found = jobs.map(|(job, triangles)| {
         let mut above = vec![];
-        let mut sum = 0.0;
+        let (mut sum, mut with_source) = (0.0, 0.0);
         let mut index = (job * TRIANGLES_PER_JOB) as u32;
-        glance(places, triangles, observer, |ceilings, corners| {
-            sum += if ceilings.area < enough {
-                1.0
-            } else {
-                minimum_triangles(corners(), allowance).max(1.0)
-            };
-            if !(ceilings.gap <= limit) {
-                above.push(index);
-            } else if !(ceilings.gap <= f64::from_bits(largest.load(Ordering::Relaxed))) {
-                let [a, b, c] = corners();
-                let gap = triangle_gap(a, b, c).min(ceilings.gap);
-                largest.fetch_max(gap.abs().to_bits(), Ordering::Relaxed);
-            }
-            index += 1;
-        });
-        (above, sum)
+        glance(
+            places,
+            triangles,
+            (observer, motion),
+            |ceilings, corners| {
+                if ceilings.area < enough && !ceilings.integral.is_nan() {
+                    sum += ceilings.integral / enough;
+                    with_source += 1.0;
+                } else {
+                    let minimum = minimum_triangles(corners(), allowance, motion);
+                    sum += minimum;
+                    with_source += minimum.max(1.0);
+                }
+                if !(ceilings.gap <= limit) {
+                    above.push(index);
+                } else if !(ceilings.gap <= f64::from_bits(largest.load(Ordering::Relaxed))) {
+                    let [a, b, c] = corners();
+                    let gap = triangle_gap(a, b, c).min(ceilings.gap);
+                    largest.fetch_max(gap.abs().to_bits(), Ordering::Relaxed);
+                }
+                index += 1;
+            },
+        );
+        (above, (sum, with_source))
     });
-    let (above, sums): (Vec<Vec<u32>>, Vec<f64>) = found.unzip();
+    let (above, sums): (Vec<Vec<u32>>, Vec<(f64, f64)>) = found.unzip();
     Survey {
         above: above.concat(),
         gap: f64::from_bits(largest.into_inner()),
         // The sums are added in the order of the jobs, so the result is the same for any number of threads.
-        minimum_triangles: sums.iter().sum(),
+        minimum_triangles: sums.iter().map(|(sum, _)| sum).sum(),
+        minimum_with_source: sums.iter().map(|(_, sum)| sum).sum(),
     }
 }
 
 /// An upper bound on the largest gap `e` of a mesh, in the rest frame like the mesh and the position `observer`.
 pub(crate) fn largest_gap(mesh: &Mesh, observer: DVec3) -> f64 {
     let any = Allowance::Everywhere(f64::INFINITY);
-    survey(mesh, observer, f64::INFINITY, &any).gap
+    survey(mesh, observer, f64::INFINITY, &any, None).gap
 }
 
 /// Calls `tell` for each triangle in its order, with its cheap bounds and a function that returns the offsets of its
@@ -89,7 +106,7 @@ pub(crate) fn largest_gap(mesh: &Mesh, observer: DVec3) -> f64 {
 fn glance(
     places: Places<'_>,
     triangles: &[[u32; 3]],
-    observer: DVec3,
+    (observer, motion): (DVec3, Option<&Motion>),
     mut tell: impl FnMut(Ceilings, &dyn Fn() -> [DVec3; 3]),
 ) {
     let arch = Arch::new();
@@ -99,6 +116,7 @@ fn glance(
             places,
             triangles,
             observer,
+            motion,
             known: &mut known,
         });
         for (corners, &ceilings) in triangles.iter().zip(&known) {
@@ -113,6 +131,7 @@ struct Block<'a> {
     places: Places<'a>,
     triangles: &'a [[u32; 3]],
     observer: DVec3,
+    motion: Option<&'a Motion>,
     known: &'a mut [Ceilings; BLOCK],
 }
 
@@ -131,7 +150,7 @@ impl NullaryFnOnce for Block<'_> {
                 y: offsets[corner][1][index],
                 z: offsets[corner][2][index],
             };
-            *known = ceilings([corner(0), corner(1), corner(2)]);
+            *known = ceilings([corner(0), corner(1), corner(2)], self.motion);
         }
     }
 }
@@ -184,11 +203,11 @@ mod tests {
             for allowed in [1e-2, 1e-4, 1e-6] {
                 let allowance = Allowance::Everywhere(allowed);
                 let least = each(&mesh, observer, |c| {
-                    minimum_triangles(c, &allowance).max(1.0)
+                    minimum_triangles(c, &allowance, None).max(1.0)
                 });
                 let expected = least.iter().sum::<f64>();
-                let found = survey(&mesh, observer, 0.5 * allowed, &allowance);
-                let ratio = found.minimum_triangles / expected;
+                let found = survey(&mesh, observer, 0.5 * allowed, &allowance, None);
+                let ratio = found.minimum_with_source / expected;
                 assert!((ratio - 1.0).abs() < 1e-13, "{observer}: {ratio}");
 
                 let mut others = 0.0f64;
@@ -214,8 +233,9 @@ mod tests {
     #[test]
     fn a_mesh_without_triangles_needs_none() {
         let mesh = Mesh::new(vec![DVec3::X], vec![]).unwrap();
-        let found = survey(&mesh, DVec3::ZERO, 0.0, &Allowance::Everywhere(1.0));
-        assert_eq!((found.gap, found.minimum_triangles), (0.0, 0.0));
+        let found = survey(&mesh, DVec3::ZERO, 0.0, &Allowance::Everywhere(1.0), None);
+        let minima = (found.minimum_triangles, found.minimum_with_source);
+        assert_eq!((found.gap, minima), (0.0, (0.0, 0.0)));
         assert!(found.above.is_empty());
     }
 }

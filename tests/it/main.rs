@@ -49,6 +49,7 @@ mod tessellation {
     mod curves;
     mod gap;
     mod properties;
+    mod surface;
 }
 
 mod import {
@@ -89,6 +90,7 @@ mod cli {
     mod films;
     mod flags;
     mod flight;
+    mod measures;
     mod models;
     mod normals;
     mod parts;

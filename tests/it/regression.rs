@@ -384,7 +384,7 @@ fn coordinates_of_any_size_do_not_halve_for_ever() {
             .unwrap()
             .next()
             .unwrap();
-        assert!(made.facts.certificate.minimum_triangles >= 1.0, "{size}");
+        assert!(made.facts.certificate.minimum_with_source >= 1.0, "{size}");
     }
 }
 

@@ -3,7 +3,7 @@
 //! A `sight` is how one observer sees the shape. `metric` says which triangles are wanted where. A `net` of triangles
 //! starts with few of them, with `rims` divided already; a `front` adds vertices, `refine` divides what that has left and
 //! takes away and moves vertices. `chart`, `bent` and `patch` describe the curved patch over a triangle, `proof` bounds the
-//! distance of both. `triangulate` puts it together, and `minimum` says how many triangles are needed.
+//! distance of both, `bounds` does that for the triangles of a net. `triangulate` puts it together, and `minimum` says how many triangles are needed.
 
 #![allow(
     clippy::needless_range_loop,
@@ -11,6 +11,7 @@
 )]
 
 mod bent;
+mod bounds;
 mod change;
 mod chart;
 mod estimate;

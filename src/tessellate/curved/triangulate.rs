@@ -4,11 +4,9 @@
 use std::collections::{HashMap, HashSet};
 
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
 
-use super::bent::Arc;
+use super::bounds::{BoundsOf, points_of, proven};
 use super::net::{Net, Task};
-use super::proof::Proof;
 use super::rims::divided_rims;
 use super::sight::About;
 use super::sight::Sight;
@@ -22,9 +20,6 @@ const REPAIRS: usize = 40;
 const MOST_TIMES: usize = 3;
 const FEW: usize = 1_000;
 
-/// Room for the rounding of a bound.
-const UP: f64 = 1.0 + 1e-9;
-
 /// If there are more triangles than there may be, the tolerance is multiplied by a factor, at least by this one, and so often
 /// at most.
 const LOOSER: f64 = 1.15;
@@ -35,8 +30,9 @@ const LOOSENINGS: usize = 200;
 pub(crate) struct Triangulated {
     /// In the shape's own frame, with normals and texture coordinates.
     pub(crate) mesh: Mesh,
-    /// For each sight the bound of each triangle, in the order of the mesh: a length in the observer's frame.
-    pub(crate) bounds: Vec<Vec<f64>>,
+    /// For each sight two bounds of each triangle, in the order of the mesh, as surfaces and between points: lengths in the
+    /// observer's frame.
+    pub(crate) bounds: Vec<Vec<[f64; 2]>>,
 }
 
 /// The triangles of a round shape for all of these sights, at most `most` of them or those of the coarsest form; `None` if
@@ -77,9 +73,6 @@ pub(crate) fn triangulate(
     let is_finite = bounds.values().flatten().all(|bound| bound.is_finite());
     is_finite.then(|| assembled(shape, &net, bounds))
 }
-
-/// The bounds of each triangle, one for each sight.
-type BoundsOf = HashMap<usize, Vec<f64>>;
 
 /// The net for a task, with its bounds, `None` if one of its triangles cannot be proven; the number of triangles where it
 /// has more than `most`.
@@ -139,98 +132,12 @@ fn repaired(net: &mut Net<'_>, most: usize) -> Option<BoundsOf> {
     None
 }
 
-/// The bounds of these triangles.
-fn proven(net: &Net<'_>, triangles: &[usize]) -> BoundsOf {
-    let each = triangles.par_iter().map(|&triangle| {
-        let sights = net.task.sights.iter().enumerate();
-        let bounds = sights
-            .map(|(number, sight)| bound_of(net, triangle, number, sight))
-            .collect();
-        (triangle, bounds)
-    });
-    each.collect()
-}
-
-fn bound_of(net: &Net<'_>, triangle: usize, number: usize, sight: &Sight) -> f64 {
-    let (corners, of) = (net.triangles[triangle], net.of[triangle]);
-    let seen = net.seen_by(number, corners);
-    let limit = sight.allowed(seen) / UP;
-    let about = net.task.about;
-    let facet = net.facet(corners, of);
-    let (rims, beside) = net.arcs(triangle);
-    let is_at_rim = rims.iter().any(Option::is_some);
-    let mut proof = Proof::new(facet, about, sight, seen, rims);
-    let bound = match about {
-        About::Surface if is_at_rim => proof.of_rim(beside, limit),
-        About::Surface => {
-            let mut normals = net.normals_by(number, corners, of);
-            let piece = net.piece_of(triangle);
-            let is_pole = |k: &usize| piece.is_pole(&net.vertices[corners[*k] as usize].spot);
-            if let Some(pole) = (0..3).find(is_pole) {
-                normals[pole] = normals[(pole + 1) % 3];
-            }
-            proof.of_surface(normals, limit)
-        }
-        About::Points => {
-            let bound = proof.of_points(limit);
-            match is_at_rim && bound <= limit {
-                // The arcs of a lid are covered too.
-                true => {
-                    let mut proof = Proof::new(facet, About::Surface, sight, seen, rims);
-                    bound.max(proof.of_rim(beside, limit))
-                }
-                false => bound,
-            }
-        }
-    };
-    bound * UP
-}
-
-impl Net<'_> {
-    /// The largest of the bounds of a triangle, as fractions of what is allowed, and the number of its sight.
-    fn share(&self, triangle: usize, bounds: &[f64]) -> (usize, f64) {
-        let corners = self.triangles[triangle];
-        let sights = self.task.sights.iter().enumerate().zip(bounds);
-        let shares = sights.map(|((number, sight), &bound)| {
-            let share = bound / sight.allowed(self.seen_by(number, corners));
-            (number, if share.is_nan() { f64::INFINITY } else { share })
-        });
-        shares.fold(
-            (0, 0.0),
-            |worst, share| if share.1 > worst.1 { share } else { worst },
-        )
-    }
-
-    /// How the sides of a triangle, opposite each corner, follow the arcs of rims, and how far they may be from these.
-    fn arcs(&self, triangle: usize) -> ([Option<Arc>; 3], f64) {
-        let (corners, rims, piece) = (
-            self.triangles[triangle],
-            self.rims_of(triangle),
-            self.piece_of(triangle),
-        );
-        let mut farthest: f64 = 0.0;
-        let arcs = [0, 1, 2].map(|k| {
-            let (from, to) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
-            let Piece::Lid { radius, .. } = *piece else {
-                return rims[k].then_some(Arc::OfFacet);
-            };
-            rims[k].then(|| {
-                let parameters = |spot: &Spot| piece.parameters(spot);
-                let [a, b] = [from, to].map(|v| parameters(&self.vertices[v as usize].spot));
-                let moved = parameters(&self.middle_of_rim(from, to)) - 0.5 * (a + b);
-                farthest = farthest.max(moved.length_squared() / (7.0 * radius));
-                Arc::Moved(moved)
-            })
-        });
-        (arcs, farthest)
-    }
-}
-
 /// The mesh of a net and the bounds of its triangles.
 fn assembled(shape: &Shape, net: &Net<'_>, bounds: BoundsOf) -> Triangulated {
     let (mut positions, mut normals, mut textures, mut triangles) =
         (vec![], vec![], vec![], vec![]);
     let mut known: HashMap<(u32, u8, [u32; 2]), u32> = HashMap::new();
+    let of_points = points_of(net);
     let mut of_sights = vec![vec![]; net.task.sights.len()];
     for triangle in (0..net.triangles.len()).filter(|&t| net.alive[t]) {
         let (corners, of) = (net.triangles[triangle], net.of[triangle]);
@@ -248,9 +155,14 @@ fn assembled(shape: &Shape, net: &Net<'_>, bounds: BoundsOf) -> Triangulated {
                 (positions.len() - 1) as u32
             })
         }));
-        let own = bounds.get(&triangle);
+        let own = [bounds.get(&triangle), of_points.get(&triangle)];
         for (number, all) in of_sights.iter_mut().enumerate() {
-            all.push(own.map_or(f64::INFINITY, |own| own[number]));
+            let [proven, of_points] = own.map(|own| own.map_or(f64::INFINITY, |own| own[number]));
+            // Under the measure of points what is proven is about them.
+            all.push(match net.task.about {
+                About::Points => [proven; 2],
+                About::Surface => [proven, of_points.max(proven)],
+            });
         }
     }
     let mesh = Mesh::new(positions, triangles)

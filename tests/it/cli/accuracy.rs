@@ -34,7 +34,8 @@ fn triangles(report: &Value) -> u64 {
 #[test]
 fn the_least_triangles_of_a_sphere_are_those_of_theory() {
     let workplace = Workplace::new();
-    let run = workplace.run("export --example sphere -o out.glb --report report.json");
+    let run =
+        workplace.run("export --example sphere --measure surface -o out.glb --report report.json");
     assert_eq!(run.status, 0, "{run}");
     let report = workplace.read_json("report.json");
     let objects = report["objects"].as_array().expect("objects");

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use photosurface::light_cone::PhotosurfaceMap;
-use photosurface::scene::Place;
+use photosurface::scene::{Measure, Place};
 use photosurface::shape::Appearance;
 use photosurface::tessellate::Precision;
 use photosurface::{
@@ -48,7 +48,12 @@ impl Sighting {
         }
     }
 
+    /// In the measure of points, which says most about what is made.
     pub(crate) fn placed(&self, source: Source) -> PlacedScene {
+        self.placed_in(Measure::Points, source)
+    }
+
+    pub(crate) fn placed_in(&self, measure: Measure, source: Source) -> PlacedScene {
         let observer = Observer {
             position: Place::new(self.observer).expect("a finite place"),
             velocity: self.velocity,
@@ -56,7 +61,8 @@ impl Sighting {
         };
         let scene = Scene::new(observer, vec![Object::new("object", source)])
             .expect("one object with a name")
-            .with_tolerance(self.tolerance);
+            .with_tolerance(self.tolerance)
+            .with_measure_for_all(measure);
         let (models, _) = load_models(&scene, ".".as_ref()).expect("nothing to be read");
         PlacedScene::new(scene, models).expect("one model an object")
     }

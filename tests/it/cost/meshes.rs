@@ -45,7 +45,7 @@ fn assert_consistent(row: &Value) {
         over <= 1.0 && over >= made("error") / made("bound") * (1.0 - 1e-12),
         "{row:#}"
     );
-    let ratio = made("triangles") / made("minimum_triangles");
+    let ratio = made("triangles") / made("minimum_with_source");
     assert!(
         (ratio / made("ratio") - 1.0).abs() < 1e-12 && ratio >= 1.0,
         "{row:#}"
@@ -63,7 +63,7 @@ fn cost_follows_theory() {
     let tolerances = "--tolerances abs:1e-3,abs:1,abs:1e-1,abs:1e-2,abs:1e-4";
     let study = study(
         &workplace,
-        &format!("scene.json --places 300000 {tolerances}"),
+        &format!("scene.json --measure points --places 300000 {tolerances}"),
     );
     assert_eq!(study["unit"], "absolute");
     assert_eq!(study["scene"]["title"], "A box ahead");

@@ -117,7 +117,9 @@ fn worst(case: &Case, event: Event, surface: &Photosurface, rest: &[DVec3]) -> f
                 weights,
             );
             let error = shown(case.model, case.beta, event, place).distance(drawn);
-            worst = worst.max(error / surface.facts.certificate.total);
+            let certificate = &surface.facts.certificate;
+            let bound = certificate.gap + certificate.curvature + certificate.rounding;
+            worst = worst.max(error / bound);
         }
     }
     worst

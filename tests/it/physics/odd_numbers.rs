@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use photosurface::light_cone::View;
 use photosurface::render::{Camera, PictureOptions, PictureSize, Projection, Scenery, Viewpoint};
-use photosurface::scene::{Attribute, MarkerRadius, Place, Rotation, Scale, Time, Unit};
+use photosurface::scene::{Attribute, MarkerRadius, Measure, Place, Rotation, Scale, Time, Unit};
 use photosurface::shape::Appearance;
 use photosurface::spacetime::VelocityError;
 use photosurface::tessellate::Precision;
@@ -255,6 +255,7 @@ impl Numbers {
             rotation: Rotation::new(DQuat::from_array(self.rotation))?,
             scale: Scale::new(self.scale)?,
             velocity: object.velocity()?,
+            measure: Some(Measure::Points),
             ..Object::new("thing", self.source()?)
         };
         let observer = Observer {

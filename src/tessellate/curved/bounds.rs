@@ -1,0 +1,130 @@
+//! The bounds of the triangles of a net: what is proven of each, for each sight.
+
+use std::collections::HashMap;
+
+use rayon::prelude::*;
+
+use super::bent::Arc;
+use super::net::Net;
+use super::proof::Proof;
+use super::sight::{About, Sight};
+use crate::shape::{Piece, Spot};
+
+/// Room for the rounding of a bound.
+const UP: f64 = 1.0 + 1e-9;
+
+/// The bounds of each triangle, one for each sight: lengths in the observer's frame.
+pub(super) type BoundsOf = HashMap<usize, Vec<f64>>;
+
+/// The bounds of these triangles.
+pub(super) fn proven(net: &Net<'_>, triangles: &[usize]) -> BoundsOf {
+    bounds_of(net, triangles, bound_of)
+}
+
+/// Bounds on the distance of places with the same weights, whatever the task is about.
+pub(super) fn points_of(net: &Net<'_>) -> BoundsOf {
+    let alive = (0..net.triangles.len()).filter(|&t| net.alive[t]);
+    match net.task.about {
+        About::Points => BoundsOf::new(),
+        About::Surface => bounds_of(net, &alive.collect::<Vec<_>>(), of_points),
+    }
+}
+
+/// The bounds of these triangles, each found by `bound`.
+fn bounds_of(
+    net: &Net<'_>,
+    triangles: &[usize],
+    bound: fn(&Net<'_>, usize, usize, &Sight) -> f64,
+) -> BoundsOf {
+    let each = triangles.par_iter().map(|&triangle| {
+        let sights = net.task.sights.iter().enumerate();
+        let bounds = sights.map(|(number, sight)| bound(net, triangle, number, sight) * UP);
+        (triangle, bounds.collect())
+    });
+    each.collect()
+}
+
+/// A bound on the distance of places with the same weights that is quickly found.
+fn of_points(net: &Net<'_>, triangle: usize, number: usize, sight: &Sight) -> f64 {
+    let (corners, of) = (net.triangles[triangle], net.of[triangle]);
+    let (facet, seen) = (net.facet(corners, of), net.seen_by(number, corners));
+    let (rims, beside) = net.arcs(triangle);
+    match rims.iter().any(Option::is_some) {
+        true => Proof::new(facet, About::Surface, sight, seen, rims).of_rim(beside, f64::INFINITY),
+        false => Proof::new(facet, About::Points, sight, seen, rims).of_points(f64::INFINITY),
+    }
+}
+
+fn bound_of(net: &Net<'_>, triangle: usize, number: usize, sight: &Sight) -> f64 {
+    let (corners, of) = (net.triangles[triangle], net.of[triangle]);
+    let seen = net.seen_by(number, corners);
+    let limit = sight.allowed(seen) / UP;
+    let about = net.task.about;
+    let facet = net.facet(corners, of);
+    let (rims, beside) = net.arcs(triangle);
+    let is_at_rim = rims.iter().any(Option::is_some);
+    let mut proof = Proof::new(facet, about, sight, seen, rims);
+    match about {
+        About::Surface if is_at_rim => proof.of_rim(beside, limit),
+        About::Surface => {
+            let mut normals = net.normals_by(number, corners, of);
+            let piece = net.piece_of(triangle);
+            let is_pole = |k: &usize| piece.is_pole(&net.vertices[corners[*k] as usize].spot);
+            if let Some(pole) = (0..3).find(is_pole) {
+                normals[pole] = normals[(pole + 1) % 3];
+            }
+            proof.of_surface(normals, limit)
+        }
+        About::Points => {
+            let bound = proof.of_points(limit);
+            match is_at_rim && bound <= limit {
+                // The arcs of a lid are covered too.
+                true => {
+                    let mut proof = Proof::new(facet, About::Surface, sight, seen, rims);
+                    bound.max(proof.of_rim(beside, limit))
+                }
+                false => bound,
+            }
+        }
+    }
+}
+
+impl Net<'_> {
+    /// The largest of the bounds of a triangle, as fractions of what is allowed, and the number of its sight.
+    pub(super) fn share(&self, triangle: usize, bounds: &[f64]) -> (usize, f64) {
+        let corners = self.triangles[triangle];
+        let sights = self.task.sights.iter().enumerate().zip(bounds);
+        let shares = sights.map(|((number, sight), &bound)| {
+            let share = bound / sight.allowed(self.seen_by(number, corners));
+            (number, if share.is_nan() { f64::INFINITY } else { share })
+        });
+        shares.fold(
+            (0, 0.0),
+            |worst, share| if share.1 > worst.1 { share } else { worst },
+        )
+    }
+
+    /// How the sides of a triangle, opposite each corner, follow the arcs of rims, and how far they may be from these.
+    fn arcs(&self, triangle: usize) -> ([Option<Arc>; 3], f64) {
+        let (corners, rims, piece) = (
+            self.triangles[triangle],
+            self.rims_of(triangle),
+            self.piece_of(triangle),
+        );
+        let mut farthest: f64 = 0.0;
+        let arcs = [0, 1, 2].map(|k| {
+            let (from, to) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
+            let Piece::Lid { radius, .. } = *piece else {
+                return rims[k].then_some(Arc::OfFacet);
+            };
+            rims[k].then(|| {
+                let parameters = |spot: &Spot| piece.parameters(spot);
+                let [a, b] = [from, to].map(|v| parameters(&self.vertices[v as usize].spot));
+                let moved = parameters(&self.middle_of_rim(from, to)) - 0.5 * (a + b);
+                farthest = farthest.max(moved.length_squared() / (7.0 * radius));
+                Arc::Moved(moved)
+            })
+        });
+        (arcs, farthest)
+    }
+}

@@ -1,0 +1,115 @@
+//! Measures on the command line and in scenes: which distance a tolerance limits.
+
+use crate::common::command::Workplace;
+use serde_json::Value;
+
+/// A plate that holds the motion, and a checkered one like it.
+fn plates(scene: &str, object: &str) -> String {
+    format!(
+        r##"{{ "observer": {{ "velocity": {{ "beta": 0.6, "direction": [1, 0, 0] }} }}, {scene}
+  "objects": [
+    {{ "name": "plain", "shape": {{ "grid": {{ "size": 2, "cells": 1 }} }}, "position": [0, -1, 0] {object} }},
+    {{ "name": "checkered", "shape": {{ "grid": {{ "size": 2, "cells": 1 }} }}, "position": [0, 1, 0],
+      "color": "#ffffff", "checker": "#000000" }} ],
+  "tolerance": {{ "absolute": 1e-3 }} }}"##
+    )
+}
+
+#[test]
+fn the_measure_is_that_of_flag_object_scene_or_default() {
+    let workplace = Workplace::new();
+    for (scene, object, flags, expected) in [
+        ("", "", "", ["surface", "points"]),
+        ("", "", "--measure points", ["points", "points"]),
+        ("", "", "--measure surface", ["surface", "surface"]),
+        ("", "", "--attributes doppler", ["points", "points"]),
+        ("", "", "--tolerance deg:0.1", ["points", "points"]),
+        (
+            r#""effects": { "doppler": "ramp" },"#,
+            "",
+            "",
+            ["points", "points"],
+        ),
+        (r#""measure": "surface","#, "", "", ["surface", "surface"]),
+        (
+            r#""measure": "points","#,
+            r#", "measure": "surface""#,
+            "",
+            ["surface", "points"],
+        ),
+        (
+            r#""measure": "surface","#,
+            r#", "measure": "points""#,
+            "--measure surface",
+            ["surface", "surface"],
+        ),
+    ] {
+        workplace.write("scene.json", plates(scene, object));
+        workplace
+            .run(&format!(
+                "export scene.json -o out.glb --report report.json {flags}"
+            ))
+            .success();
+        let report = workplace.read_json("report.json");
+        let objects = report["objects"].as_array().expect("objects");
+        let certificates: Vec<&Value> = objects
+            .iter()
+            .map(|object| &object["certificate"])
+            .collect();
+        let measures: Vec<&Value> = certificates.iter().map(|c| &c["measure"]).collect();
+        assert_eq!(measures, expected, "{scene} {object} {flags}");
+        for certificate in certificates {
+            let number = |key: &str| certificate[key].as_f64().expect("a number");
+            let gap = match certificate["measure"] == "surface" {
+                true => number("surface_gap"),
+                false => number("gap"),
+            };
+            assert!(number("surface_gap") <= number("gap"), "{certificate}");
+            assert!(certificate["complete"] == true, "{certificate}");
+            if certificate["unit"] == "length" {
+                let sum = gap + number("curvature") + number("rounding");
+                assert!((number("total") / sum - 1.0).abs() < 1e-12, "{certificate}");
+            }
+            let ratio = number("triangles_out") / number("minimum_with_source");
+            assert!(
+                (number("ratio") / ratio - 1.0).abs() < 1e-12,
+                "{certificate}"
+            );
+            assert!(ratio >= 1.0 && number("minimum_triangles") <= number("minimum_with_source"));
+        }
+        let flags = flags.replace("--attributes doppler", "");
+        let run = workplace.run(&format!("check scene.json --json {flags}"));
+        let check: Value = serde_json::from_slice(&run.success().stdout).expect("JSON");
+        if !flags.is_empty() || expected != ["points", "points"] {
+            assert_eq!(check["objects"][0]["measure"], expected[0], "{flags}");
+        }
+    }
+}
+
+#[test]
+fn a_surface_takes_fewer_triangles_where_the_motion_runs_along_it() {
+    let workplace = Workplace::new();
+    workplace.write("scene.json", plates("", ""));
+    let triangles = |measure: &str| {
+        let line = format!(
+            "cost scene.json --only meshes --measure {measure} --tolerances abs:1e-3 --repeats 1 --json cost.json"
+        );
+        workplace.run(&line).success();
+        let made = workplace.read_json("cost.json")["meshes"][0]["made"].clone();
+        let number = |key: &str| made[key].as_f64().expect("a number");
+        assert!(
+            number("error") <= number("bound") && number("gap") <= number("bound"),
+            "{made}"
+        );
+        number("triangles")
+    };
+    assert!(triangles("surface") < 0.3 * triangles("points"));
+    let wrong = ["points", "surface"];
+    workplace
+        .run("export scene.json --measure area -o x.glb")
+        .error(&wrong);
+    workplace.write("wrong.json", plates(r#""measure": "area","#, ""));
+    workplace
+        .run("check wrong.json")
+        .error(&["wrong.json", "expected points or surface"]);
+}
