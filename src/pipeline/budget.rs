@@ -33,7 +33,7 @@ const MAX_LOOSENING: f64 = 1e300;
 /// An object's share of the budget beyond its source triangles is used up to at least this fraction, if
 /// [`MAX_HALVINGS`] halvings suffice.
 const USED: f64 = 0.9;
-const MAX_HALVINGS: usize = 8;
+const MAX_HALVINGS: usize = 14;
 
 /// An aim is not loosened further once the object needs no more than this many times the triangles of the loosest aim:
 /// the last few per cent would need a meaningless tolerance.

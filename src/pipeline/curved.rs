@@ -110,17 +110,22 @@ pub(super) fn make_curved_together<'a>(
     Some(surfaces.collect())
 }
 
+/// About how many triangles a round shape takes as an exact surface; `None` of any other object.
+pub(super) fn predicted_of_curved(plan: &Plan<'_>) -> Option<f64> {
+    let shaped = plan.placed_object.curved()?;
+    let sight = sight_of(plan, shaped);
+    let needed = needed(&shaped.shape, &sight, plan.tolerance.about());
+    Some(needed.predicted.max(shaped.shape.coarsest_curved() as f64))
+}
+
 /// The prediction for a round shape that is planned as an exact surface.
 pub(super) fn predict_curved(plan: &Plan<'_>) -> Option<Predicted> {
     let shaped = plan.placed_object.curved().filter(|_| plan.is_curved)?;
-    let sight = sight_of(plan, shaped);
-    let needed = needed(&shaped.shape, &sight, plan.tolerance.about());
-    let before = shaped.shape.coarsest_curved() as f64;
     let placed = plan.placed_object.parts[0].1.mesh();
     Some(Predicted {
-        triangles: needed.predicted.max(before),
-        before,
-        reachable: is_reachable(&plan.tolerance, &sight, placed),
+        triangles: predicted_of_curved(plan)?,
+        before: shaped.shape.coarsest_curved() as f64,
+        reachable: is_reachable(&plan.tolerance, &sight_of(plan, shaped), placed),
     })
 }
 

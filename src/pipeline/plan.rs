@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use rayon::prelude::*;
 
 use super::SurfaceOptions;
+use super::curved::predicted_of_curved;
 use super::limits::{Limits, StepTolerance};
 use super::mapped_mesh::MappedMesh;
 use super::placed_object::{PlacedObject, Shaped};
@@ -100,12 +101,29 @@ impl<'a> Plan<'a> {
             shape: None,
             granted,
             seen,
-            is_curved,
+            is_curved: false,
         };
-        if !is_curved {
-            plan.take_facets(wanted);
+        plan.take_facets(wanted);
+        if is_curved {
+            plan.take_curved();
         }
         plan
+    }
+
+    /// Plans a round shape as an exact surface, if that takes clearly fewer triangles than facets of one resolution: each takes
+    /// about ten times as long.
+    fn take_curved(&mut self) {
+        /// Up to this fraction of the facets they are worth the time.
+        const WORTH: f64 = 2.0 / 3.0;
+        let facets = self.shape.as_ref().map_or_else(
+            || self.placed_object.parts[0].1.mesh().triangle_count() as f64,
+            |shape| shape.triangle_count() as f64,
+        );
+        if predicted_of_curved(self).is_some_and(|predicted| predicted <= WORTH * facets) {
+            self.is_curved = true;
+            self.shape = None;
+            self.tolerance.deviation = 0.0;
+        }
     }
 
     /// Gives a shape, a round one too, facets of one resolution, as the tolerance asks for.

@@ -67,7 +67,7 @@ impl Bent {
             for _ in 0..MOVES {
                 let q = middle + bent.moved[k];
                 let jet = facet.chart.jet(q);
-                let aside = flat(sight.seen(jet.place) - opposite);
+                let aside = flat(sight.seen_nearly(jet.place) - opposite);
                 let offset = sight.offset(jet.place);
                 let jacobian = sight.jacobian_vector(offset.normalize_or_zero());
                 let [u, v] = jet.first.map(|first| {

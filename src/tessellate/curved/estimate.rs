@@ -38,7 +38,7 @@ impl Estimate {
         rims: [Option<DVec3>; 3],
     ) -> Self {
         const THIRD: f64 = 1.0 / 3.0;
-        let place = |weights: [f64; 3]| sight.seen(facet.chart.place(facet.at(weights)));
+        let place = |weights: [f64; 3]| sight.seen_nearly(facet.chart.place(facet.at(weights)));
         let allowed = sight.allowed(seen);
         let (mut whole, mut sides, mut bulges) = (0.0f64, [0.0f64; 3], [DVec3::ZERO; 3]);
         for k in 0..3 {
@@ -49,7 +49,7 @@ impl Estimate {
             bulges[k] = place(weights) - middle;
             if let Some(on_rim) = rims[k] {
                 let along = (seen[j] - seen[i]).normalize_or_zero();
-                let aside = sight.seen(on_rim) - middle;
+                let aside = sight.seen_nearly(on_rim) - middle;
                 sides[k] = (aside - along * along.dot(aside)).length();
                 whole = whole.max(sides[k]);
             }

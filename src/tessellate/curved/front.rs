@@ -8,7 +8,7 @@ use std::collections::BinaryHeap;
 
 use glam::DVec3;
 
-use super::net::{Net, Task, half_edges_of, next, previous, triangle_of};
+use super::net::{Net, Placed, Task, half_edges_of, next, previous, triangle_of};
 use crate::shape::Spot;
 
 /// The wanted length of sides, in the metric in which an equilateral triangle of length 1 is as far from the photosurface
@@ -164,15 +164,16 @@ impl Net<'_> {
     ) -> Option<(usize, Spot)> {
         let of = self.of[triangle];
         let spot = self.task.pieces[of as usize].spot_near(place);
-        let home = self.triangle_at(triangle, &spot)?;
+        let place = self.task.pieces[of as usize].place_of(&spot);
+        let placed = (&spot, place);
+        let home = self.triangle_at(triangle, placed)?;
         let corners = self.triangles[home];
-        let spots = corners.map(|corner| &self.vertices[corner as usize].spot);
+        let around = corners.map(|corner| self.placed(corner));
         if self.of[home] != of
-            || !(0..3).all(|k| self.faces_outwards([spots[k], spots[(k + 1) % 3], &spot], of))
+            || !(0..3).all(|k| self.faces_outwards([around[k], around[(k + 1) % 3], placed], of))
         {
             return None;
         }
-        let place = self.task.pieces[of as usize].place_of(&spot);
         let side = Task::side_of(of);
         let metric = self.triangles[triangle].map(|corner| &self.vertices[corner as usize]);
         let metric = metric
@@ -202,7 +203,7 @@ impl Net<'_> {
     }
 
     /// The triangle that a spot of a piece lies in, found by a walk; `None` beyond a rim.
-    fn triangle_at(&self, start: usize, spot: &Spot) -> Option<usize> {
+    fn triangle_at(&self, start: usize, spot: Placed<'_>) -> Option<usize> {
         let (mut triangle, mut before) = (start, usize::MAX);
         for _ in 0..STEPS {
             let mut worst = (0.0, None);

@@ -140,7 +140,8 @@ fn by_parameters(piece: &Piece, spot: &Spot, sight: &Sight, tangents: [DVec3; 2]
     let q = piece.parameters(spot);
     let first = piece.jet(q).first;
     let step = first.map(|first| STEP / first.length().max(1e-9));
-    let at = |i: f64, j: f64| sight.seen(piece.place(q + DVec2::new(i * step[0], j * step[1])));
+    let at =
+        |i: f64, j: f64| sight.seen_nearly(piece.place(q + DVec2::new(i * step[0], j * step[1])));
     let middle = at(0.0, 0.0);
     let square = STEP * STEP;
     let uu = (at(1.0, 0.0) + at(-1.0, 0.0) - 2.0 * middle) / square;

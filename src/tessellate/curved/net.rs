@@ -37,6 +37,9 @@ pub(super) struct Vertex {
     pub(super) out: u32,
 }
 
+/// A spot and its place.
+pub(super) type Placed<'a> = (&'a Spot, DVec3);
+
 /// The net. Half-edge `3 t + k` goes from corner `k` of triangle `t` to the next one.
 pub(super) struct Net<'a> {
     pub(super) task: Task<'a>,
@@ -308,19 +311,17 @@ impl<'a> Net<'a> {
 
     /// Twice the area of a triangle of spots, in a chart of the piece in which sides are straight: positive where it faces
     /// outwards.
-    fn area(&self, piece: &Piece, spots: [&Spot; 3]) -> f64 {
+    fn area(&self, piece: &Piece, corners: [Placed<'_>; 3]) -> f64 {
+        let spots = corners.map(|(spot, _)| spot);
         let flat = |a: DVec2, b: DVec2, c: DVec2| (b - a).perp_dot(c - a);
         match *piece {
             Piece::Ball { .. } => spots[0].at.cross(spots[1].at).dot(spots[2].at),
             Piece::Globe { .. } => {
-                let [a, b, c] = spots.map(|spot| piece.normal_of(spot));
+                let [a, b, c] = corners.map(|(_, place)| place);
                 a.cross(b).dot(c)
             }
             Piece::Slope { .. } | Piece::Lid { .. } => {
-                let [a, b, c] = spots.map(|spot| {
-                    let place = piece.place_of(spot);
-                    DVec2::new(place.x, place.z)
-                });
+                let [a, b, c] = corners.map(|(_, place)| DVec2::new(place.x, place.z));
                 let up = if let Piece::Lid { up, .. } = *piece {
                     up
                 } else {
@@ -346,18 +347,25 @@ impl<'a> Net<'a> {
         }
     }
 
+    /// A vertex with its place.
+    pub(super) fn placed(&self, vertex: u32) -> Placed<'_> {
+        let vertex = &self.vertices[vertex as usize];
+        (&vertex.spot, vertex.place)
+    }
+
     /// On which side of the line from `a` to `b` a spot is: positive on the left, seen from outside.
-    pub(super) fn side_of_line(&self, [a, b]: [u32; 2], spot: &Spot, piece: u8) -> f64 {
-        let [a, b] = [a, b].map(|vertex| &self.vertices[vertex as usize].spot);
-        self.area(&self.task.pieces[piece as usize], [a, b, spot])
+    pub(super) fn side_of_line(&self, [a, b]: [u32; 2], spot: Placed<'_>, piece: u8) -> f64 {
+        let corners = [self.placed(a), self.placed(b), spot];
+        self.area(&self.task.pieces[piece as usize], corners)
     }
 
     /// Whether three spots of a piece make a triangle that faces outwards and spans no more than a quarter of a turn.
-    pub(super) fn faces_outwards(&self, spots: [&Spot; 3], piece: u8) -> bool {
+    pub(super) fn faces_outwards(&self, corners: [Placed<'_>; 3], piece: u8) -> bool {
         let piece = &self.task.pieces[piece as usize];
-        if !(self.area(piece, spots) > 0.0) {
+        if !(self.area(piece, corners) > 0.0) {
             return false;
         }
+        let spots = corners.map(|(spot, _)| spot);
         let periods = piece.periods();
         (0..3).all(|k| {
             let (a, b) = (spots[k], spots[(k + 1) % 3]);
@@ -375,10 +383,7 @@ impl<'a> Net<'a> {
 
     /// The same for vertices.
     pub(super) fn may_be(&self, corners: [u32; 3], piece: u8) -> bool {
-        self.faces_outwards(
-            corners.map(|corner| &self.vertices[corner as usize].spot),
-            piece,
-        )
+        self.faces_outwards(corners.map(|corner| self.placed(corner)), piece)
     }
 
     /// Whether such a triangle also faces, as seen, where the photosurface at its corners does.

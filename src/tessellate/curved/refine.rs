@@ -16,12 +16,14 @@ const BETTER: f64 = 0.999;
 const GOOD: f64 = 0.05;
 const GOOD_TO_STAY: f64 = 0.3;
 
+/// Up to this fraction of the allowed distance there is room for taking a vertex of a triangle away.
+const SLACK: f64 = 0.9;
+
 /// The allowed fraction up to which vertices are taken away.
 const FULL: f64 = 0.98;
 
-/// Steps of moved vertices, as a part of the way to the opposite side; and how often all of it is done.
-const STEPS: [f64; 2] = [0.25, 0.12];
-const ROUNDS: usize = 2;
+/// The step of moved vertices, as a part of the way to the opposite side.
+const STEP: f64 = 0.2;
 
 /// Limit on turns of edges after one change.
 const TURNS: usize = 200;
@@ -161,13 +163,9 @@ impl Net<'_> {
 
     /// Takes away vertices and moves others, so that fewer triangles are near enough.
     pub(super) fn tidy(&mut self) {
-        for _ in 0..ROUNDS {
-            self.thin();
-            for step in STEPS {
-                self.smooth(step);
-                self.improve_all();
-            }
-        }
+        self.thin();
+        self.smooth();
+        self.improve_all();
         self.thin();
     }
 
@@ -179,6 +177,10 @@ impl Net<'_> {
                 continue;
             }
             let star = self.star(vertex);
+            let has_room = |e: &u32| self.estimates[triangle_of(*e)].whole < SLACK;
+            if !star.iter().all(has_room) {
+                continue;
+            }
             let mut best: Option<(f64, u32)> = None;
             for &half_edge in &star {
                 let most = best.map_or(FULL, |(worst, _)| worst);
@@ -250,7 +252,7 @@ impl Net<'_> {
     }
 
     /// Moves each vertex towards the side opposite it in the worst of its triangles, where that lessens the largest distance.
-    fn smooth(&mut self, step: f64) {
+    fn smooth(&mut self) {
         for vertex in 0..self.vertices.len() as u32 {
             let Vertices { out, spot } = self.state_of(vertex);
             if out == NONE || spot.is_fixed {
@@ -269,14 +271,14 @@ impl Net<'_> {
             if now < GOOD_TO_STAY {
                 continue;
             }
-            if let Some(moved) = self.moved(spot, worst, step) {
+            if let Some(moved) = self.moved(spot, worst) {
                 self.move_if_better(vertex, moved, &star, now);
             }
         }
     }
 
     /// The spot of a vertex, the start of a half-edge, after a step towards the opposite side.
-    fn moved(&self, spot: Spot, half_edge: u32, step: f64) -> Option<Spot> {
+    fn moved(&self, spot: Spot, half_edge: u32) -> Option<Spot> {
         let ends = [half_edge, previous(half_edge)];
         if spot.rim > 0 {
             let along = ends.into_iter().find(|&e| self.is_rim(e))?;
@@ -285,7 +287,7 @@ impl Net<'_> {
             let other = other.into_iter().find(|other| other.at != spot.at)?;
             let turn = other.at.x - spot.at.x;
             return Some(Spot::on_rim(
-                spot.at.x + 0.5 * step * (turn - turn.round()),
+                spot.at.x + 0.5 * STEP * (turn - turn.round()),
                 spot.rim,
             ));
         }
@@ -296,13 +298,13 @@ impl Net<'_> {
             self.start(previous(half_edge)),
         ];
         let [own, b, c] = corners.map(|v| self.vertices[v as usize].place);
-        let place = own + step * (0.5 * (b + c) - own);
+        let place = own + STEP * (0.5 * (b + c) - own);
         let moved = match piece {
             Piece::Ball { .. } | Piece::Lid { .. } | Piece::Slope { .. } => piece.spot_near(place),
             _ => {
                 let spots = corners.map(|v| &self.vertices[v as usize].spot);
                 let facet = Facet::new(piece, spots, About::Points);
-                let mut at = facet.at([1.0 - step, 0.5 * step, 0.5 * step]);
+                let mut at = facet.at([1.0 - STEP, 0.5 * STEP, 0.5 * STEP]);
                 for (axis, period) in piece.periods().into_iter().enumerate() {
                     if period > 0.0 {
                         at[axis] = at[axis].rem_euclid(1.0);

@@ -1,7 +1,8 @@
 //! Certified subdivision of curved shapes, against closed forms of their surfaces.
 
 use crate::common::Random;
-use crate::common::refining::{Sighting, distance_to_mesh, mix, random_weights};
+use crate::common::refining::{Sighted, Sighting, distance_to_mesh, mix, random_weights};
+use photosurface::scene::Measure;
 use photosurface::shape::Appearance;
 use photosurface::tessellate::Precision;
 use photosurface::{DVec3, Shape, Source, Tolerance, Velocity};
@@ -10,17 +11,47 @@ fn moving(beta: f64) -> Velocity {
     Velocity::from_beta(beta, DVec3::new(0.3, -0.2, -1.0)).unwrap()
 }
 
-/// The certificate of a curved shape is against the curve itself: from it to the mesh and back.
-#[test]
-fn curved_shapes_are_certified_against_the_curve() {
-    let mut random = Random::new(8);
+fn shapes() -> [Shape; 5] {
     let shapes = [
         Shape::sphere(1.0),
         Shape::cylinder(0.5, 2.0),
         Shape::cone(0.7, 1.5),
         Shape::torus(1.0, 0.3),
+        Shape::rod(2.0, 0.5),
     ];
-    for shape in shapes.map(Result::unwrap) {
+    shapes.map(Result::unwrap)
+}
+
+/// Holds random places of the curve against the mesh, and random places of the mesh against the curve.
+#[track_caller]
+fn assert_certified(sighting: &Sighting, shape: &Shape, sighted: &Sighted, random: &mut Random) {
+    let certificate = &sighted.certificate;
+    let room = certificate.total * (1.0 + 1e-9);
+    for _ in 0..200 {
+        let truth = sighting.seen(on_curve(shape, random));
+        let distance = distance_to_mesh(truth, &sighted.seen);
+        assert!(distance <= room, "{shape:?}: {distance:e} {certificate:?}");
+    }
+    let per_triangle = 2000usize.div_ceil(sighted.triangle_count());
+    for corners in sighted.seen.triangles() {
+        for _ in 0..per_triangle {
+            let weights = random_weights(random);
+            let flat = mix(
+                corners.map(|c| sighted.seen.positions()[c as usize]),
+                weights,
+            );
+            let rest = mix(corners.map(|c| sighted.rest[c as usize]), weights);
+            let distance = distance_to_curve(sighting, shape, rest, flat, room);
+            assert!(distance <= room, "{shape:?}: {distance:e} {certificate:?}");
+        }
+    }
+}
+
+/// The certificate of a curved shape is against the curve itself: from it to the mesh and back.
+#[test]
+fn curved_shapes_are_certified_against_the_curve() {
+    let mut random = Random::new(8);
+    for shape in shapes() {
         for (observer, tolerance) in [
             (
                 DVec3::new(0.3, 0.2, 4.0),
@@ -34,43 +65,77 @@ fn curved_shapes_are_certified_against_the_curve() {
             let mut sighting = Sighting::new(observer, moving(0.9), tolerance);
             sighting.wanted.precision = Precision::Single;
             let source = Source::Shape(shape.clone(), Appearance::default());
-            let sighted = &sighting.of_source(source)[0];
+            let sighted = &sighting.sighted(&sighting.placed_in(Measure::Surface, source))[0];
             let certificate = &sighted.certificate;
             assert!(certificate.complete, "{shape:?}: {certificate:?}");
-            assert!(certificate.curvature > 0.0);
-            for _ in 0..200 {
-                let truth = sighting.seen(on_curve(&shape, &mut random));
-                let distance = distance_to_mesh(truth, &sighted.seen);
-                assert!(
-                    distance <= certificate.total,
-                    "{shape:?}: {distance:e} {certificate:?}"
-                );
-            }
-            let per_triangle = 2000usize.div_ceil(sighted.triangle_count());
-            for corners in sighted.seen.triangles() {
-                for _ in 0..per_triangle {
-                    let weights = random_weights(&mut random);
-                    let flat = mix(
-                        corners.map(|c| sighted.seen.positions()[c as usize]),
-                        weights,
-                    );
-                    let rest = mix(corners.map(|c| sighted.rest[c as usize]), weights);
-                    // The place of the curve next to the one at rest is one of those that may be the nearest.
-                    let distance = flat.distance(sighting.seen(to_curve(&shape, rest)));
-                    assert!(
-                        distance <= certificate.total,
-                        "{shape:?}: {distance:e} {certificate:?}"
-                    );
+            assert!(certificate.surface_gap > 0.0 && certificate.curvature == 0.0);
+            assert!(certificate.gap >= certificate.surface_gap);
+            assert_certified(&sighting, &shape, sighted, &mut random);
+        }
+    }
+}
+
+/// The same where the observer is fast, near, inside, or touches the shape, for surfaces and for points.
+#[test]
+fn hard_sights_of_curved_shapes_keep_their_certificates() {
+    let mut random = Random::new(9);
+    let observers = [
+        DVec3::new(0.2, 0.1, 4.0),
+        DVec3::new(0.05, 0.1, 0.2),
+        DVec3::new(0.0, 0.3, 1.001),
+    ];
+    let velocities = [
+        moving(0.0),
+        moving(0.99),
+        moving(0.9999),
+        Velocity::from_gamma(1e4, DVec3::new(0.3, -0.2, -1.0)).unwrap(),
+    ];
+    for shape in shapes() {
+        for observer in observers {
+            for velocity in velocities {
+                for measure in Measure::ALL {
+                    let tolerance = Tolerance::relative(1e-2).unwrap();
+                    let sighting = Sighting::new(observer, velocity, tolerance);
+                    let source = Source::Shape(shape.clone(), Appearance::default());
+                    let sighted = &sighting.sighted(&sighting.placed_in(measure, source))[0];
+                    assert_eq!(sighted.certificate.measure, measure);
+                    assert_certified(&sighting, &shape, sighted, &mut random);
                 }
             }
         }
     }
 }
 
+/// The distance of a place of the mesh from the curve as it is seen, from `rest` on in smaller and smaller steps; no more
+/// steps are taken when it is within `enough`.
+fn distance_to_curve(
+    sighting: &Sighting,
+    shape: &Shape,
+    rest: DVec3,
+    flat: DVec3,
+    enough: f64,
+) -> f64 {
+    let mut at = to_curve(shape, rest);
+    let mut nearest = flat.distance(sighting.seen(at));
+    let mut step = 0.2;
+    while nearest > enough && step > 1e-12 {
+        let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+        let moves = axes.iter().flat_map(|axis| [*axis, -*axis]);
+        let next = moves.map(|axis| to_curve(shape, at + axis * step));
+        let next = next.map(|place| (flat.distance(sighting.seen(place)), place));
+        match next.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((distance, place)) if distance < nearest => (nearest, at) = (distance, place),
+            _ => step *= 0.5,
+        }
+    }
+    nearest
+}
+
 /// The corners of the generating outline in the half plane of distance from and height along the axis.
 fn outline(shape: &Shape) -> &'static [[f64; 2]] {
     match shape {
         Shape::Cylinder(_) => &[[0.0, 1.0], [0.5, 1.0], [0.5, -1.0], [0.0, -1.0]],
+        Shape::Rod(_) => &[[0.0, 1.0], [0.5, 1.0], [0.5, -1.0], [0.0, -1.0]],
         Shape::Cone(_) => &[[0.0, 0.75], [0.7, -0.75], [0.0, -0.75]],
         _ => unreachable!("round"),
     }
