@@ -183,6 +183,33 @@ def test_half_copied_files(cluster, here, expected, tmp_path_factory):
         os.environ["PATH"] = before
 
 
+def test_parts_of_a_film_take_what_was_found_once(cluster, here, expected):
+    """The client looks at all steps once; no part does. The exposure depends on all of them, as the camera does."""
+    scene = SCENE | {"effects": {"searchlight": True, "exposure": "auto"}}
+    words = ["render", "lit.json", "--steps=-6..6/60", "--size", "32x18", "--samples", "1", "-o", "out/frame.png"]
+    (here / "lit.json").write_text(json.dumps(scene))
+    subprocess.run([BINARY, *words, "-q"], cwd=here, check=True)
+    files = contents(here)
+    for name in files:
+        (here / "out" / name).unlink()
+    # On every worker, the program tells how it was called.
+    told = here / "told.txt"
+    program = here / "told-name"
+    program.write_text("#!/bin/sh\n" f'echo "$@" >>"{told}"\n' f'exec "{BINARY}" "$@"\n')
+    program.chmod(0o755)
+    finished(Run(here, cluster.address, *words, "--program", program, "--chunk", 20), here, files, range(60))
+    calls = told.read_text().splitlines()
+    assert sum("--plan" in call.split() for call in calls) == 1, calls
+    parts = [call for call in calls if "--only" in call]
+    assert len(parts) == 3 and all("--planned=" in call for call in parts), calls
+    # A plan that is damaged on its way is an error, and nothing is drawn by it.
+    plan = json.loads(subprocess.run([BINARY, *words, "--plan"], cwd=here, check=True, capture_output=True).stdout)
+    plan["overview"]["found"]["exposure"] += 1
+    (here / "plan.json").write_text(json.dumps(plan))
+    wrong = subprocess.run([BINARY, *words, "--only=0..1", "--planned=plan.json"], cwd=here, capture_output=True, text=True)
+    assert wrong.returncode == 2 and "is damaged" in wrong.stderr, wrong.stderr
+
+
 def test_what_cannot_be_done_is_said(cluster, here):
     """Errors of the work itself are not tried again and again."""
     for words, expected in [

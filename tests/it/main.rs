@@ -77,6 +77,7 @@ mod render {
     mod golden;
     mod lamps;
     mod one_call;
+    mod overview;
     mod pictures;
 }
 
@@ -92,6 +93,7 @@ mod cli {
     mod models;
     mod normals;
     mod parts;
+    mod planned;
     mod render;
     mod sweep;
 }
