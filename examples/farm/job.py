@@ -33,7 +33,8 @@ class Job:
                 raise Refused("--report is for a run on one machine; the farm has --table")
         # The same names here and on the workers, whose folders are others.
         self.arguments = [relative(word) for word in arguments]
-        plan = json.loads(self.run(self.command, *self.arguments, "--plan=files"))
+        is_render = self.command == "render"
+        plan = json.loads(self.run(self.command, *self.arguments, "--plan=files" if is_render else "--plan"))
         self.version, self.of = plan["version"], plan["of"]
         self.outputs = {}
         for output in plan["outputs"]:
@@ -43,7 +44,7 @@ class Job:
             self.outputs.setdefault(first, []).append(output)
         self.finished = [n for n, files in self.outputs.items() if all(file["finished"] for file in files)]
         self.files = self.read(plan["inputs"], options.send_program)
-        if self.command == "render" and len(self.outputs) - len(self.finished) > 1:
+        if is_render and len(self.outputs) - len(self.finished) > 1:
             self.look()
         digest = hashlib.sha256(json.dumps([self.version, self.command, self.arguments]).encode())
         for name, content in sorted(self.files.items()):

@@ -12,7 +12,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from cluster import Cluster, Run, Wire
+from cluster import Cluster, Gate, Run, Wire
 
 BINARY = os.environ["PHOTOSURFACE_BINARY"]
 MESH = Path(__file__).resolve().parents[2] / "fixtures" / "meshes" / "asteroid.glb"
@@ -32,6 +32,7 @@ def cluster(tmp_path_factory):
     cluster = Cluster(tmp_path_factory.mktemp("cluster"))
     for name in ("one", "two", "three"):
         cluster.worker(name)
+    cluster.ready("one", "two", "three")
     yield cluster
     print(cluster.logs())
     cluster.close()
@@ -96,31 +97,38 @@ def notes(chunks):
     return "\n".join(note for row in chunks for note in row["notes"])
 
 
-def test_a_film_while_a_worker_is_killed(cluster, here, expected):
+def test_a_film_while_a_worker_is_killed(cluster, here, expected, tmp_path_factory):
     files = expected(FILM)
     assert len(files) == 300
-    run = Run(here, cluster.address, *FILM, "--program", BINARY, "--chunk", 10, "--film", "film.gif")
+    gate = Gate(tmp_path_factory.mktemp("gate"), BINARY, 30)
+    run = Run(here, cluster.address, *FILM, "--program", gate.program, "--chunk", 10, "--film", "film.gif")
     run.when("out/frame_step*.png", 30)
+    gate.held(3)
     cluster.kill("two")
+    gate.open()
     chunks = finished(run, here, files, range(300))
     assert "was lost, done by another" in notes(chunks), chunks
     cluster.worker("two")
+    cluster.ready("two")
     # The film is that of the frames of one machine.
     frames = sorted(map(str, (here / "out").iterdir()))
     subprocess.run([BINARY, "join", *frames, "-o", here / "alone.gif", "-q"], check=True)
     assert (here / "film.gif").read_bytes() == (here / "alone.gif").read_bytes()
 
 
-def test_a_sweep_over_a_bad_wire(cluster, here, expected):
+def test_a_sweep_over_a_bad_wire(cluster, here, expected, tmp_path_factory):
     """The client's wire to the scheduler is held still for some seconds, later cut, and mended."""
     files = expected(SWEEP)
     assert len(files) == RUNS
     wire = Wire(cluster.port)
-    run = Run(here, wire.address, *SWEEP, "--program", BINARY, "--chunk", 10)
+    gate = Gate(tmp_path_factory.mktemp("gate"), BINARY, 60)
+    run = Run(here, wire.address, *SWEEP, "--program", gate.program, "--chunk", 10)
     run.when("out/*.glb", 20)
     wire.hold(3)
     run.when("out/*.glb", 60)
+    gate.held(3)
     wire.cut(3)
+    gate.open()
     chunks = finished(run, here, files, range(RUNS))
     assert "connection to the scheduler was lost, tried again" in notes(chunks), chunks
 
@@ -140,6 +148,7 @@ def test_a_full_disk(cluster, here, expected):
     try:
         # Without the right to mount a small disk, the process itself may write no large file.
         cluster.worker("full", before=None if is_mounted else no_room)
+        cluster.ready("full")
         run = Run(here, cluster.address, *SWEEP, "--program", BINARY, "--chunk", 5)
         chunks = finished(run, here, files, range(RUNS))
     finally:
@@ -163,6 +172,7 @@ def test_half_copied_files(cluster, here, expected, tmp_path_factory):
         cluster.kill(name)
         cluster.worker(name, path=right)
     cluster.worker("half", path=wrong)
+    cluster.ready("one", "two", "three", "half")
     os.environ["PATH"], before = f"{right}:{os.environ['PATH']}", os.environ["PATH"]
     try:
         words = [*FILM, "--resume", "--program", "shared-name", "--chunk", 10]

@@ -30,26 +30,42 @@ fn a_part_with_a_plan_is_that_without() {
         ("render ball.json --look 0,1,0.3 --fov 70", "observer"),
         ("render ball.json --full-sky --size 32x16", "observer"),
         ("render lit.json", "exposure"),
-        ("render lit.json --view outside --axes --scale-bar", "outside"),
+        (
+            "render lit.json --view outside --axes --scale-bar",
+            "outside",
+        ),
         ("render ball.json --view outside --from 2,3,20", "outside"),
         ("render square.obj --beta 0.9 --ghost rest", "observer"),
-        ("render ball.json --beta 0.3,0.9 --models seen,rest", "observer"),
+        (
+            "render ball.json --beta 0.3,0.9 --models seen,rest",
+            "observer",
+        ),
         ("render lit.json --beta 0.3,0.9 --view outside", "outside"),
         (
             "render square.obj --beta 0.9 --method mesh --tolerance 1e-3 --max-triangles 900",
             "observer",
         ),
     ] {
-        let size = if line.contains("--size") { "--steps=-3..3/7 --samples 1" } else { PASS };
+        let size = if line.contains("--size") {
+            "--steps=-3..3/7 --samples 1"
+        } else {
+            PASS
+        };
         let line = format!("{line} {size}");
-        let status = if line.contains("--max-triangles") { 1 } else { 0 };
+        let status = if line.contains("--max-triangles") {
+            1
+        } else {
+            0
+        };
         let plan = planned(&workplace, &line, "plan.json");
         let found = &plan["overview"]["found"];
         let is_empty = found[has].is_null() || found[has] == serde_json::json!([]);
         assert!(!is_empty, "{line}: {plan}");
         let run = workplace.run(&format!("{line} -o whole.png"));
         assert_eq!(run.status, status, "{run}");
-        let run = workplace.run(&format!("{line} -o part.png --only 2..4 --planned plan.json"));
+        let run = workplace.run(&format!(
+            "{line} -o part.png --only 2..4 --planned plan.json"
+        ));
         assert_eq!(run.status, status, "{run}");
         for number in 0..7 {
             let [whole, part] = ["whole", "part"].map(|name| format!("{name}_step00{number}.png"));
@@ -71,7 +87,9 @@ fn a_part_with_a_plan_is_that_without() {
         .run(&format!("{line} --film film.gif --only 2..4"))
         .success();
     workplace
-        .run(&format!("{line} --film part.gif --only 2..4 --planned plan.json"))
+        .run(&format!(
+            "{line} --film part.gif --only 2..4 --planned plan.json"
+        ))
         .success();
     assert_eq!(workplace.read("part.gif"), workplace.read("film.gif"));
     planned(&workplace, &format!("{line} --resume"), "plan.json");
@@ -90,16 +108,28 @@ fn a_plan_of_something_else_is_refused() {
     workplace.write("lit.json", LIT);
     let line = format!("render lit.json {PASS}");
     planned(&workplace, &line, "plan.json");
-    for same in ["-o other.png", "--only 3..4 -o a.png", "--threads 1 -q -o b.png"] {
+    for same in [
+        "-o other.png",
+        "--only 3..4 -o a.png",
+        "--threads 1 -q -o b.png",
+    ] {
         workplace
             .run(&format!("{line} {same} --planned plan.json"))
             .success();
     }
-    let another = ["--planned", "plan.json", "another scene", "other flags", "--plan"];
+    let another = [
+        "--planned",
+        "plan.json",
+        "another scene",
+        "other flags",
+        "--plan",
+    ];
     let refused = |line: &str, words: &[&str]| {
         let before = workplace.files();
         workplace
-            .run(&format!("{line} -o refused.png --only 2..4 --planned plan.json"))
+            .run(&format!(
+                "{line} -o refused.png --only 2..4 --planned plan.json"
+            ))
             .error(words);
         assert_eq!(workplace.files(), before);
     };
@@ -161,14 +191,21 @@ fn a_plan_that_is_damaged_is_refused() {
         workplace
             .run(&format!("{line} -o refused.png --planned bad.json"))
             .error(&all);
-        assert!(!workplace.files().iter().any(|name| name.starts_with("refused")));
+        assert!(
+            !workplace
+                .files()
+                .iter()
+                .any(|name| name.starts_with("refused"))
+        );
     };
     refused("", &["is no plan", "EOF"]);
     refused(&text[..text.len() / 2], &["is no plan", "EOF"]);
     refused("[1, 2]", &["is no plan", "version"]);
     let version = env!("CARGO_PKG_VERSION");
     refused(&text.replace(version, "0.0.1"), &["version 0.0.1", version]);
-    let exposure = plan["overview"]["found"]["exposure"].as_f64().expect("stops");
+    let exposure = plan["overview"]["found"]["exposure"]
+        .as_f64()
+        .expect("stops");
     let changed = |pointer: &str, value: Value| {
         let mut changed = plan.clone();
         *changed.pointer_mut(pointer).expect("it is there") = value;
@@ -191,9 +228,15 @@ fn a_plan_that_is_damaged_is_refused() {
         &changed("/overview/found", serde_json::json!({ "more": 1 })),
         &["is damaged", "more"],
     );
-    refused(&changed("/overview", Value::Null), &["without \"overview\""]);
+    refused(
+        &changed("/overview", Value::Null),
+        &["without \"overview\""],
+    );
     let files = workplace.run(&format!("{line} --plan=files")).success();
-    refused(files.stdout_text(), &["without \"overview\"", "--plan=files"]);
+    refused(
+        files.stdout_text(),
+        &["without \"overview\"", "--plan=files"],
+    );
     let export = workplace.run("export lit.json --plan").success();
     refused(export.stdout_text(), &["without \"overview\""]);
     workplace

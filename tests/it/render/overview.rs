@@ -22,7 +22,10 @@ fn rows(steps: &[f64]) -> Vec<Vec<Variant>> {
     vec![vec![Variant { label, placed }]]
 }
 
-fn pictures(rows: &[Vec<Variant>], settings: &PictureSettings) -> Result<Vec<Picture>, RenderError> {
+fn pictures(
+    rows: &[Vec<Variant>],
+    settings: &PictureSettings,
+) -> Result<Vec<Picture>, RenderError> {
     let mut pictures = vec![];
     render_side_by_side(rows, &Textures::default(), settings, &(), |_, picture| {
         pictures.push(picture.clone());
@@ -56,8 +59,14 @@ fn a_step_alone_with_the_overview_of_all_is_as_among_them() {
                 overview: Some(again.clone()),
                 ..settings.clone()
             };
-            assert!(pictures(&alone, &handed).unwrap()[0] == *expected, "{view:?} {step}");
-            assert!(pictures(&alone, &settings).unwrap()[0] != *expected, "{view:?} {step}");
+            assert!(
+                pictures(&alone, &handed).unwrap()[0] == *expected,
+                "{view:?} {step}"
+            );
+            assert!(
+                pictures(&alone, &settings).unwrap()[0] != *expected,
+                "{view:?} {step}"
+            );
         }
         // Of other settings: there is no camera outside, or no exposure.
         let mut others = settings.clone();
