@@ -6,7 +6,7 @@
 
 ENGINE is any mesh; that of the tables in examples/farm/README.md is Khronos' 2CylinderEngine, 75,730 triangles. Programs run
 with one thread, and their times are those of the processor, so that other work on the machine does not count; the median of
-several runs, or one of 4K. What the cluster itself takes is by the wall clock.
+several runs, but of one frame in 4K. What the cluster itself takes is by the wall clock.
 """
 
 import json
@@ -132,25 +132,29 @@ def main(program, engine):
               "| fixed costs of a part of 10,000 steps | chunk |")
         print("|---|---|---|---|---|---|---|")
         costs = {}
-        large = ["--size", "3840x2160"]
-        for title, words, rounds, steps in [
-            ("export of the engine, certified", ["export", name, "--split", "-o", "a.glb", "--max-triangles=none"], ROUNDS, 9),
-            ("the same with a budget", ["export", name, "--split", "-o", "a.glb"], ROUNDS, 9),
-            ("export, as it is", ["export", name, "--split", "--no-subdivide", "-o", "a.glb"], ROUNDS, 9),
-            ("picture of the engine, 320x180, 1 ray per pixel", ["render", name, "--size", "320x180", "--samples", "1"], ROUNDS, 9),
-            ("3840x2160, 9 rays per pixel", ["render", name, *large], 1, 2),
-            ("3840x2160, 9 rays per pixel, of photosurfaces", ["render", name, *large, "--method", "mesh"], 1, 2),
-            ("of the built-in street", ["render", "--example", "street", *large], 1, 2),
-            ("of the built-in street, of photosurfaces", ["render", "--example", "street", *large, "--method", "mesh"], 1, 2),
-        ]:
-            work = Work(program, folder, *words, *(["-o", "a.png"] if words[0] == "render" else []))
-            step, start, of_whole = work.part(rounds, steps)
-            look = work.look() if work.is_render else 0.0
+
+        def tell(title, step, start, of_whole, look=0.0):
             fixed = handed + start + FRAMES * of_whole
             costs[title] = step, fixed, look
             print(f"| {title} | {seconds(step)} | {seconds(start)} | {of_whole * 1e6:.0f} µs | {look * 1e3:.1f} ms "
                   f"| {seconds(fixed)} | {chunk_of(step, fixed)} |", flush=True)
-        step, fixed, look = costs["3840x2160, 9 rays per pixel"]
+
+        for title, flags in [("export of the engine, certified", ["--max-triangles=none"]), ("the same with a budget", []),
+                             ("export, as it is", ["--no-subdivide"])]:
+            tell(title, *Work(program, folder, "export", name, "--split", "-o", "a.glb", *flags).part())
+        small, large = ["--size", "320x180", "--samples", "1"], ["--size", "3840x2160"]
+        for scene, named in [("the engine", [name]), ("the built-in street", ["--example", "street"])]:
+            for method in ("rays", "mesh"):
+                words = ["render", *named, "--method", method, "-o", "a.png"]
+                work = Work(program, folder, *words, *small)
+                step, start, of_whole = work.part()
+                look = work.look()
+                tell(f"picture of {scene}, 320x180, 1 ray per pixel, {method}", step, start, of_whole, look)
+                # One frame, once.
+                whole, _ = timed(Work(program, folder, *words, *large).all_words(100, 1), folder)
+                tell(f"picture of {scene}, 3840x2160, 9 rays per pixel, {method}", whole - start - 100 * of_whole, start,
+                     of_whole, look)
+        step, fixed, look = costs["picture of the engine, 3840x2160, 9 rays per pixel, rays"]
         print(f"\na film of {FRAMES} frames of 3840x2160, a frame {seconds(step)}, all on one thread each")
         print("\n| workers | chunk | plan | parts | of which fixed costs | together |\n|---|---|---|---|---|---|")
         for workers in (1, 10, 100):
