@@ -6,7 +6,7 @@
 
 ENGINE is any mesh; that of the tables in examples/farm/README.md is Khronos' 2CylinderEngine, 75,730 triangles. Programs run
 with one thread, and their times are those of the processor, so that other work on the machine does not count; the median of
-several runs, but of one frame in 4K. What the cluster itself takes is by the wall clock.
+several runs, but of one frame in 4K.
 """
 
 import json
@@ -83,27 +83,18 @@ class Work:
 
 
 def handed_out(program, folder, name, parts=100):
-    """Seconds by the wall clock that a part costs on the cluster, one worker, beside the same part run directly.
+    """Seconds of the processor that a part costs on a cluster, and run directly; the length of its file.
 
-    A scheduler and a worker as processes of their own; the files come back over the connection.
+    Those of the client, the scheduler and one worker together, which are processes here; the files come back over the
+    connection.
     """
     words = ["export", name, f"--steps=-6..6/{parts}", "--split", "--no-subdivide", "-o", "part.glb"]
     farm = [sys.executable, str(FARM), *words, "--program", program, "--worker-threads", "1"]
-    def wall(*commands):
-        """The least of some rounds: other work on the machine only adds to it."""
-        rounds = []
-        for _ in range(ROUNDS):
-            start = time.perf_counter()
-            for command in commands:
-                subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            rounds.append(time.perf_counter() - start)
-        return min(rounds)
-
     on_farm, direct = [], []
     for chunk in (1, parts):
-        on_farm.append(wall([*farm, "--scheduler", "local", "--workers", "1", "--chunk", str(chunk)]))
-        direct.append(wall(*([program, *words, f"--only={first}..{first + chunk}", "--threads=1", "--progress=json"]
-                             for first in range(0, parts, chunk))))
+        on_farm.append(median([*farm, "--scheduler", "local", "--workers", "1", "--chunk", str(chunk)], folder))
+        direct.append(sum(timed([program, *words, f"--only={first}..{first + chunk}", "--threads=1", "-q"], folder)[0]
+                          for first in range(0, parts, chunk)))
     more = parts - 1  # So many parts more, each with the start of a program.
     size = (Path(folder) / "part_step000.glb").stat().st_size
     return (on_farm[0] - on_farm[1]) / more, (direct[0] - direct[1]) / more, size
