@@ -17,7 +17,7 @@ class Refused(Exception):
 
 
 # Flags that the farm gives to the program itself.
-OWN = ("--only", "--progress", "--threads", "--plan")
+OWN = ("--only", "--progress", "--threads", "--plan", "--planned")
 
 
 class Job:
@@ -33,7 +33,8 @@ class Job:
                 raise Refused("--report is for a run on one machine; the farm has --table")
         # The same names here and on the workers, whose folders are others.
         self.arguments = [relative(word) for word in arguments]
-        plan = json.loads(self.run(self.command, *self.arguments, "--plan"))
+        is_render = self.command == "render"
+        plan = json.loads(self.run(self.command, *self.arguments, "--plan=files" if is_render else "--plan"))
         self.version, self.of = plan["version"], plan["of"]
         self.outputs = {}
         for output in plan["outputs"]:
@@ -43,10 +44,21 @@ class Job:
             self.outputs.setdefault(first, []).append(output)
         self.finished = [n for n, files in self.outputs.items() if all(file["finished"] for file in files)]
         self.files = self.read(plan["inputs"], options.send_program)
+        if is_render and len(self.outputs) - len(self.finished) > 1:
+            self.look()
         digest = hashlib.sha256(json.dumps([self.version, self.command, self.arguments]).encode())
         for name, content in sorted(self.files.items()):
             digest.update(f"{name}\0{len(content)}\0".encode() + content)
         self.name = f"photosurface-{digest.hexdigest()[:16]}"
+
+    def look(self):
+        """Looks at all steps once, here, for what their pictures have in common, so that no part has to."""
+        if sys.stderr.isatty():
+            print(f"looking at all {self.of} steps", file=sys.stderr)
+        plan = json.loads(self.run(self.command, *self.arguments, "--plan"))
+        if plan["overview"]:
+            # Without the files, which no part asks for.
+            self.files["/plan"] = json.dumps({"version": plan["version"], "overview": plan["overview"]}).encode()
 
     def run(self, *words):
         """Runs the program here; what it prints."""
@@ -78,7 +90,7 @@ class Job:
         pack = io.BytesIO()
         with zipfile.ZipFile(pack, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as packed:
             for name, content in self.files.items():
-                place = "program" if name == "/program" else "root" + os.path.abspath(name)
+                place = name[1:] if name in ("/program", "/plan") else "root" + os.path.abspath(name)
                 packed.writestr(place, content)
         return pack.getvalue()
 

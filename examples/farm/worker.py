@@ -34,6 +34,7 @@ class Inputs(WorkerPlugin):
 
     def setup(self, worker):
         self.root = Path(worker.local_directory) / self.name
+        self.plan = self.root / "plan"
         self.lock = threading.Lock()
         self.locks = defaultdict(threading.Lock)
         self.ready = False
@@ -84,7 +85,10 @@ def tried(worker, inputs, command, arguments, first, end, threads):
     try:
         program, folder = inputs.unpack()
         threads = threads or max(1, (os.cpu_count() or 1) // worker.state.nthreads)
-        words = [program, command, f"--only={first}..{end}", "--progress=json", f"--threads={threads}", *arguments]
+        words = [program, command, f"--only={first}..{end}", "--progress=json", f"--threads={threads}"]
+        if inputs.plan.exists():
+            words.append(f"--planned={inputs.plan}")
+        words += arguments
         done = subprocess.run(words, cwd=folder, capture_output=True, stdin=subprocess.DEVNULL)
         for line in done.stderr.decode(errors="replace").splitlines():
             if line.startswith("{"):

@@ -174,7 +174,7 @@ pub(super) fn made(args: &ExportArgs, loaded: &Loaded) -> anyhow::Result<Outcome
     };
     let levels = export_levels(&placed, &settings, format, &path).map_err(in_words_of_flags)?;
     check_destinations(levels.iter().flat_map(ExportLevel::outputs), &input.files)?;
-    if args.work.plan {
+    if args.work.plans() {
         let planned = levels.iter().flat_map(planned).collect();
         let plan = Plan::new(&args.input, &input, planned, of);
         return Ok(Outcome::planned(plan));

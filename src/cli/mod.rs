@@ -25,6 +25,7 @@ mod models;
 mod outcome;
 mod output;
 mod page;
+mod planned;
 mod provenance;
 mod quoting;
 mod render;

@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, ensure};
 use photosurface::jobs::{
     EmptyView, Finished, FrameFacts, PassageError, RenderError, Rendered, Variant, ViewCost,
-    passage, render_side_by_side,
+    overview, passage, render_side_by_side,
 };
 use photosurface::render::{Picture, Projection};
 use photosurface::spacetime::ViewModel;
 use photosurface::tessellate::Precision;
-use photosurface::write::{Seal, write_whole};
+use photosurface::write::{Fingerprint, Seal, write_whole};
 use photosurface::{Observer, PictureView, PlacedScene, Progress, Scene};
 
 use super::accuracy::AccuracyArgs;
@@ -27,8 +27,9 @@ use super::messages::{Verbosity, counted, grouped, print};
 use super::models::ModelsArgs;
 use super::outcome::Outcome;
 use super::output::{check_destinations, extension, from_first_to_last, is_stdout};
+use super::planned::PlannedOverview;
 use super::status::Status;
-use super::work::{Plan, PlannedFile, Told, WorkArgs};
+use super::work::{Plan, PlannedFile, Told, WorkArgs, fingerprint_of_inputs};
 
 /// Shown below the flags.
 const EXAMPLES: &str = "\
@@ -67,6 +68,11 @@ pub(super) struct RenderArgs {
     /// are finished stay when it is interrupted; - for stdout [default: NAME_VIEW.png or NAME_sheet.png in this directory]
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     output: Option<PathBuf>,
+    /// Take what is found by looking at all steps from the plan in FILE, which --plan has printed for the same scene, files
+    /// and flags (those of the part and of the output aside): a part with --only looks at no other steps then, and its pictures
+    /// are the same, byte for byte
+    #[arg(long, value_name = "FILE", help_heading = "Work", conflicts_with_all = ["plan", "sheet", "together"])]
+    planned: Option<PathBuf>,
     #[command(flatten)]
     work: WorkArgs,
     #[command(flatten)]
@@ -145,7 +151,8 @@ pub(super) fn made(args: &RenderArgs, loaded: &Loaded) -> anyhow::Result<Outcome
         Some(_) => &files[..],
         None => &files[drawn.clone()],
     };
-    check_destinations(made.iter().cloned(), &input.files)?;
+    let read: Vec<PathBuf> = input.files.iter().chain(&args.planned).cloned().collect();
+    check_destinations(made.iter().cloned(), &read)?;
     let resume = match &film {
         Some(_) => None,
         None => args.work.fingerprint(&args.input, &input, made)?,
@@ -154,7 +161,20 @@ pub(super) fn made(args: &RenderArgs, loaded: &Loaded) -> anyhow::Result<Outcome
     settings.background = camera.background(scene, settings.background);
     settings.surface_options = args.accuracy.wanted(Precision::Double);
     let budget = args.accuracy.max_triangles();
-    let resume = resume.map(|files| files.with("scenes", &(&scenes, models, budget)));
+    let of_scenes = |files: Fingerprint| files.with("scenes", &(&scenes, models, budget));
+    let resume = resume.map(of_scenes);
+    // Of an overview, if there is one or is to be one.
+    let whole = match args.planned.is_some() || args.work.plans_all() && settings.has_overview() {
+        true => fingerprint_of_inputs(&args.input, &input)?,
+        false => None,
+    };
+    let whole = whole.map(|files| settings.fingerprint_of_all(of_scenes(files)));
+    if let Some(path) = &args.planned {
+        let whole = whole.context(
+            "--planned compares files, and the mesh comes from stdin; give its file name instead of -",
+        )?;
+        settings.overview = Some(PlannedOverview::read(path, whole).context("--planned")?);
+    }
     let seal = |number| {
         let fingerprint = settings.fingerprint(resume?, number);
         Seal::of_file(&files[number], fingerprint)
@@ -166,8 +186,31 @@ pub(super) fn made(args: &RenderArgs, loaded: &Loaded) -> anyhow::Result<Outcome
             .filter_map(|number| Some((number, seal(number)?)))
             .collect(),
     };
+    let fits_budget =
+        camera.shows_meshes(method) && settings.surface_options.subdivide && budget < u64::MAX;
+    let wanted = settings.surface_options;
+    let fitted = |placed| match fits_budget {
+        true => {
+            args.accuracy
+                .within_budget(placed, wanted, verbosity)
+                .placed
+        }
+        false => placed,
+    };
+    let textures = &input.textures;
+    let placed = |scene: &Scene| PlacedScene::new(scene.clone(), input.models.clone());
+    let rows = || -> anyhow::Result<Vec<Vec<Variant>>> {
+        let rows = scenes.iter();
+        rows.map(|(label, scene)| row(label, placed(scene)?, models, fitted))
+            .collect()
+    };
+    let progress = args.work.told(0, "rows", verbosity);
+    let progress = match film {
+        Some(_) => progress,
+        None => progress.awaiting_files(),
+    };
     let of = settings.picture_count(steps);
-    if args.work.plan {
+    if args.work.plans() {
         let planned = match &film {
             Some(film) => vec![PlannedFile::new(film.path, drawn.clone(), false)],
             None => drawn
@@ -182,7 +225,12 @@ pub(super) fn made(args: &RenderArgs, loaded: &Loaded) -> anyhow::Result<Outcome
                 })
                 .collect(),
         };
-        let plan = Plan::new(&args.input, &input, planned, of);
+        let mut plan = Plan::new(&args.input, &input, planned, of);
+        if let Some(whole) = whole {
+            let found = overview(&rows()?, textures, &settings, &progress);
+            let found = found.map_err(|error| camera.flagged(error))?;
+            plan.overview = Some(PlannedOverview::new(found, whole));
+        }
         return Ok(Outcome::planned(plan));
     }
     settings.skipped = resumed.keys().copied().collect();
@@ -192,22 +240,6 @@ pub(super) fn made(args: &RenderArgs, loaded: &Loaded) -> anyhow::Result<Outcome
     if method == Method::Rays {
         tell_of_blurred(&first, verbosity);
     }
-    let fits_budget =
-        camera.shows_meshes(method) && settings.surface_options.subdivide && budget < u64::MAX;
-    let fitted = |placed| match fits_budget {
-        true => {
-            let wanted = settings.surface_options;
-            args.accuracy
-                .within_budget(placed, wanted, verbosity)
-                .placed
-        }
-        false => placed,
-    };
-    let progress = args.work.told(0, "rows", verbosity);
-    let progress = match film {
-        Some(_) => progress,
-        None => progress.awaiting_files(),
-    };
     for (&number, seal) in &resumed {
         let bytes = std::fs::metadata(&files[number]).map_or(0, |data| data.len());
         progress.finished(&Finished {
@@ -219,8 +251,6 @@ pub(super) fn made(args: &RenderArgs, loaded: &Loaded) -> anyhow::Result<Outcome
             is_resumed: true,
         });
     }
-    let textures = &input.textures;
-    let placed = |scene: &Scene| PlacedScene::new(scene.clone(), input.models.clone());
     let draw = |finished: &mut dyn FnMut(usize, &Picture) -> anyhow::Result<()>| match (
         scenes.as_slice(),
         models,
@@ -229,13 +259,7 @@ pub(super) fn made(args: &RenderArgs, loaded: &Loaded) -> anyhow::Result<Outcome
             let placed = fitted(placed(scene)?);
             photosurface::render(&placed, textures, &settings, &progress, finished)
         }
-        (scenes, models) => {
-            let mut rows = vec![];
-            for (label, scene) in scenes {
-                rows.push(row(label, placed(scene)?, models, fitted)?);
-            }
-            render_side_by_side(&rows, textures, &settings, &progress, finished)
-        }
+        _ => render_side_by_side(&rows()?, textures, &settings, &progress, finished),
     };
     let seal = |number| {
         Some(Seal {

@@ -16,6 +16,7 @@ use super::args::InputArgs;
 use super::input::Input;
 use super::messages::{Verbosity, print_if_open};
 use super::output::{Bar, extension, is_stdout};
+use super::planned::PlannedOverview;
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Work")]
@@ -31,9 +32,26 @@ pub(super) struct WorkArgs {
     #[arg(long, value_enum, value_name = "HOW", default_value_t = Telling::Bar)]
     progress: Telling,
     /// Make nothing: print as JSON which files would be read and written, which steps are in each, and which of them are
-    /// finished for --resume; for programs that share the work out with --only
-    #[arg(long)]
-    pub(super) plan: bool,
+    /// finished for --resume; for programs that share the work out with --only. The plan of pictures has an overview too, of
+    /// what is found by looking at all steps, for --planned; --plan=files leaves it out, which takes no time
+    #[arg(
+        long,
+        value_enum,
+        value_name = "WHAT",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "all"
+    )]
+    plan: Option<PlanOf>,
+}
+
+/// What a plan is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum PlanOf {
+    /// Files, and what pictures of all steps have in common
+    All,
+    /// Files alone
+    Files,
 }
 
 /// How progress is told.
@@ -44,6 +62,16 @@ pub(super) enum Telling {
 }
 
 impl WorkArgs {
+    /// Whether only a plan is asked for.
+    pub(super) fn plans(&self) -> bool {
+        self.plan.is_some()
+    }
+
+    /// Whether the plan has an overview, if there can be one.
+    pub(super) fn plans_all(&self) -> bool {
+        self.plan == Some(PlanOf::All)
+    }
+
     /// What hears of the progress of so many things.
     pub(super) fn told(&self, length: usize, things: &str, verbosity: Verbosity) -> Told {
         Told::new(self.progress, length, things, verbosity)
@@ -59,26 +87,36 @@ impl WorkArgs {
         if !self.resume {
             return Ok(None);
         }
-        let named = args.input.as_deref();
-        ensure!(
-            !(input.is_mesh && named.is_some_and(is_stdout)),
-            "--resume compares files, and the mesh comes from stdin; give its file name instead of -"
-        );
         ensure!(
             !outputs.iter().any(|file| is_stdout(file)),
             "--resume looks for finished files, and stdout holds none; give a file name instead of -"
         );
-        // The scene is compared as it was read, not letter by letter.
-        let is_scene =
-            |file: &Path| named == Some(file) && extension(file).as_deref() == Some("json");
-        let mut fingerprint =
-            Fingerprint::default().with("access", &args.access().max_texture_pixels);
-        for file in input.files.iter().filter(|file| !is_scene(file)) {
-            let read = fingerprint.with_file(file);
-            fingerprint = read.with_context(|| file.display().to_string())?;
-        }
-        Ok(Some(fingerprint))
+        let found = fingerprint_of_inputs(args, input)?;
+        found
+            .context(
+                "--resume compares files, and the mesh comes from stdin; give its file name instead of -",
+            )
+            .map(Some)
     }
+}
+
+/// The fingerprint of the files that were read; none if a mesh came from stdin.
+pub(super) fn fingerprint_of_inputs(
+    args: &InputArgs,
+    input: &Input,
+) -> anyhow::Result<Option<Fingerprint>> {
+    let named = args.input.as_deref();
+    if input.is_mesh && named.is_some_and(is_stdout) {
+        return Ok(None);
+    }
+    // The scene is compared as it was read, not letter by letter.
+    let is_scene = |file: &Path| named == Some(file) && extension(file).as_deref() == Some("json");
+    let mut fingerprint = Fingerprint::default().with("access", &args.access().max_texture_pixels);
+    for file in input.files.iter().filter(|file| !is_scene(file)) {
+        let read = fingerprint.with_file(file);
+        fingerprint = read.with_context(|| file.display().to_string())?;
+    }
+    Ok(Some(fingerprint))
 }
 
 /// Hears of the progress of a job, and tells of it as it is asked for.
@@ -210,6 +248,8 @@ pub(super) struct Plan {
     pub(super) version: &'static str,
     /// How many parts `--only` can tell apart: steps, pictures or frames.
     pub(super) of: usize,
+    /// What pictures of all steps have in common, for --planned.
+    pub(super) overview: Option<PlannedOverview>,
     /// The files that are read, as they are named: scene, meshes, and the files that those refer to; "-" for stdin.
     pub(super) inputs: Vec<String>,
     /// The files that are written.
@@ -254,6 +294,7 @@ impl Plan {
         Self {
             version: env!("CARGO_PKG_VERSION"),
             of,
+            overview: None,
             inputs: inputs.map(|file| file.display().to_string()).collect(),
             outputs,
         }

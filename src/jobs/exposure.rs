@@ -24,18 +24,21 @@ const BRIGHT: f64 = 0.8;
 /// Light is measured where the observer sees it. For views from outside, which show all of the photosurfaces, rays go in
 /// the directions of vertices.
 pub(super) fn expose(all: &mut [Views]) -> Result<Stops, RenderError> {
-    let is_auto =
-        |views: &&mut Views| views.placed.scene().effects().shown().exposure == Exposure::Auto;
     let mut found = Vec::new();
-    for views in all.iter_mut().filter(is_auto) {
+    for views in all.iter().filter(|views| is_auto(views)) {
         let of_scene = views.with_all_at_rest(|scenery| luminances(views, scenery))?;
         found.extend(of_scene);
     }
     let stops = exposure(found);
-    for views in all.iter_mut().filter(is_auto) {
+    for views in all.iter_mut().filter(|views| is_auto(views)) {
         views.set_exposure(stops);
     }
     Ok(stops)
+}
+
+/// Whether a scene leaves its exposure to be found.
+pub(super) fn is_auto(views: &Views) -> bool {
+    views.placed.scene().effects().shown().exposure == Exposure::Auto
 }
 
 /// The luminances of surfaces that the observer sees.

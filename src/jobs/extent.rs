@@ -43,11 +43,63 @@ pub(super) fn outermost(places: Vec<DVec3>) -> Vec<DVec3> {
     if places.len() <= DIRECTIONS {
         return places;
     }
-    let farthest = |direction: DVec3| {
-        let by_distance = |a: &&DVec3, b: &&DVec3| a.dot(direction).total_cmp(&b.dot(direction));
-        places.iter().max_by(by_distance).copied()
+    let blocks: Vec<Block<'_>> = places.chunks(BLOCK).map(Block::new).collect();
+    directions()
+        .filter_map(|direction| farthest(&blocks, direction))
+        .collect()
+}
+
+/// So many points in a row, which are mostly near each other, are passed over together.
+const BLOCK: usize = 64;
+
+/// Points in a row, and the corners of the box around them.
+struct Block<'a> {
+    places: &'a [DVec3],
+    low: DVec3,
+    high: DVec3,
+}
+
+impl<'a> Block<'a> {
+    fn new(places: &'a [DVec3]) -> Self {
+        let (low, high) = match places.iter().all(|place| place.is_finite()) {
+            true => bounds(places.iter().copied()),
+            // What an infinite coordinate comes to along a direction is not always a number.
+            false => (DVec3::NEG_INFINITY, DVec3::INFINITY),
+        };
+        Self { places, low, high }
+    }
+
+    /// How far along a direction a point of the block can be. Each step of the computation rounds up or down together with
+    /// that of the point, so that the bound holds for computed numbers too.
+    fn bound(&self, direction: DVec3) -> f64 {
+        let corner = DVec3::select(direction.cmpge(DVec3::ZERO), self.high, self.low);
+        corner.dot(direction)
+    }
+}
+
+/// The last of the points that are farthest along a direction.
+fn farthest(blocks: &[Block<'_>], direction: DVec3) -> Option<DVec3> {
+    let along = |place: &DVec3| place.dot(direction);
+    let last_of = |block: &Block<'_>| {
+        let by_distance = |a: &&DVec3, b: &&DVec3| along(a).total_cmp(&along(b));
+        block.places.iter().max_by(by_distance).copied()
     };
-    directions().filter_map(farthest).collect()
+    let bounds: Vec<f64> = blocks.iter().map(|block| block.bound(direction)).collect();
+    let first = (0..blocks.len()).max_by(|&a, &b| bounds[a].total_cmp(&bounds[b]))?;
+    let floor = along(&last_of(&blocks[first])?);
+    let mut best: Option<DVec3> = None;
+    for (block, &bound) in blocks.iter().zip(&bounds) {
+        // A bound that is not a number is less than nothing.
+        if bound < floor {
+            continue;
+        }
+        if let Some(place) = last_of(block)
+            && best.is_none_or(|best| along(&place).total_cmp(&along(&best)).is_ge())
+        {
+            best = Some(place);
+        }
+    }
+    best
 }
 
 /// Unit vectors that are evenly spread over the sphere, along a spiral with the golden angle.
@@ -111,6 +163,47 @@ mod tests {
         }
         let few = vec![DVec3::ZERO; 3];
         assert_eq!(outermost(few.clone()), few);
+    }
+
+    /// Passing over blocks changes nothing: the same points as by looking at each, where many are equally far, where some
+    /// are infinite or not numbers, and wherever the farthest one is.
+    #[test]
+    fn blocks_that_are_passed_over_hold_no_farthest_point() {
+        let number = |seed: u64| {
+            let mixed = (seed ^ 0x9e37_79b9).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            (mixed ^ mixed >> 31).wrapping_mul(0x94d0_49bb_1331_11eb) >> 11
+        };
+        for (kind, odd) in [
+            (0, DVec3::ZERO),
+            (1, DVec3::NAN),
+            (2, DVec3::INFINITY),
+            (3, DVec3::new(f64::NEG_INFINITY, f64::NAN, -0.0)),
+            (4, DVec3::splat(1e308)),
+        ] {
+            let coordinate = |seed: u64| match kind % 2 {
+                // Few different numbers, so that many points are equally far.
+                0 => (number(seed) % 5) as f64 - 2.0,
+                _ => number(seed) as f64 / (1u64 << 53) as f64 - 0.5,
+            };
+            let mut places: Vec<DVec3> = (0..1000)
+                .map(|k| {
+                    DVec3::new(
+                        coordinate(3 * k),
+                        coordinate(3 * k + 1),
+                        -coordinate(3 * k + 2),
+                    )
+                })
+                .collect();
+            places[333 + kind] = odd;
+            let slowly = directions().map(|direction| {
+                let along = |a: &&DVec3, b: &&DVec3| a.dot(direction).total_cmp(&b.dot(direction));
+                *places.iter().max_by(along).unwrap()
+            });
+            let bits = |place: DVec3| place.to_array().map(f64::to_bits);
+            let expected: Vec<_> = slowly.map(bits).collect();
+            let found: Vec<_> = outermost(places.clone()).into_iter().map(bits).collect();
+            assert_eq!(found, expected, "{kind}");
+        }
     }
 
     /// A point whose square overflows or vanishes, because it is very far or very near, still counts with its correct

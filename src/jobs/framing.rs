@@ -150,4 +150,10 @@ impl CameraSettings {
         }
         here
     }
+
+    /// Whether the frame of the observer's pictures depends on what is seen; of settings without a usual aim.
+    pub(super) fn depends_on_skies(&self) -> bool {
+        let is_told = matches!(self.aim, Aim::Look(_) | Aim::Target(_));
+        !is_told && self.projection != PictureProjection::FullSky
+    }
 }

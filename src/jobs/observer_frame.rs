@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::{DMat3, DVec2, DVec3};
+use serde::{Deserialize, Serialize};
 
 use super::extent::{bounds, middle_of_sky};
 use super::framing::{
@@ -27,6 +28,12 @@ const NEAR_VERTICAL: f64 = PI / 6.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ObserverFrame {
     size: PictureSize,
+    sight: Sight,
+}
+
+/// What the cameras of all steps have in common, whatever the size of the pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Sight {
     projection: Projection,
     aim: Direction,
     is_cut: bool,
@@ -46,7 +53,8 @@ pub struct FrameFacts {
 }
 
 /// Where the cameras look.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 enum Direction {
     /// One direction at all steps, with a direction that is up.
     Held { look: DVec3, up: DVec3 },
@@ -55,7 +63,8 @@ enum Direction {
 }
 
 /// A projection onto a plane, without its field of view.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 enum Flat {
     Perspective,
     Stereographic,
@@ -101,11 +110,13 @@ impl ObserverFrame {
         skies: &[Vec<DVec3>],
         heading: Option<DVec3>,
     ) -> Result<Self, FramingError> {
-        let frame = |projection, aim, is_cut| Self {
-            size: settings.size,
-            projection,
-            aim,
-            is_cut,
+        let frame = |projection, aim, is_cut| {
+            let sight = Sight {
+                projection,
+                aim,
+                is_cut,
+            };
+            Self::of(sight, settings.size)
         };
         let aimed = match settings.aim {
             Aim::Look(look) => Some(look),
@@ -172,6 +183,16 @@ impl ObserverFrame {
         frame(projection, held(look, DVec3::Y), is_cut).checked(settings)
     }
 
+    /// The frame of pictures of this size.
+    pub(super) fn of(sight: Sight, size: PictureSize) -> Self {
+        Self { size, sight }
+    }
+
+    /// What does not depend on the size of the pictures.
+    pub(super) fn sight(&self) -> Sight {
+        self.sight
+    }
+
     /// This frame, if it has cameras.
     fn checked(self, settings: &CameraSettings) -> Result<Self, FramingError> {
         match (self.camera(&[]), settings.aim) {
@@ -185,36 +206,36 @@ impl ObserverFrame {
 
     /// The camera for a step at which things are seen in these directions.
     pub(super) fn camera(&self, sky: &[DVec3]) -> Result<Camera, FramingError> {
-        let (look, up) = match self.aim {
+        let (look, up) = match self.sight.aim {
             Direction::Held { look, up } => (look, up),
             Direction::Tracked { flat, up } => match fit(flat, sky, aspect(self.size), up) {
                 Some(fit) => (fit.look, up),
                 None => (middle_of_sky(sky), up),
             },
         };
-        Ok(Camera::with_up(self.size, self.projection, look, up)?)
+        Ok(Camera::with_up(self.size, self.sight.projection, look, up)?)
     }
 
     /// The facts about the pictures.
     pub(super) fn facts(&self) -> FrameFacts {
-        let (flat, fov_deg) = match self.projection {
+        let (flat, fov_deg) = match self.sight.projection {
             Projection::Perspective { vertical_fov_deg } => (Flat::Perspective, vertical_fov_deg),
             Projection::Stereographic { vertical_fov_deg } => {
                 (Flat::Stereographic, vertical_fov_deg)
             }
             Projection::FullSky => {
                 return FrameFacts {
-                    projection: self.projection,
+                    projection: self.sight.projection,
                     widest_deg: 360.0,
-                    is_cut: self.is_cut,
+                    is_cut: self.sight.is_cut,
                 };
             }
         };
         let half = flat.half_extent(fov_deg);
         FrameFacts {
-            projection: self.projection,
+            projection: self.sight.projection,
             widest_deg: flat.fov_deg(half * aspect(self.size).max(1.0)),
-            is_cut: self.is_cut,
+            is_cut: self.sight.is_cut,
         }
     }
 }

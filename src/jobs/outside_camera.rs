@@ -1,6 +1,7 @@
 //! Cameras outside, which have photosurfaces, ghosts, the marker and axes in the picture.
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use super::extent::{bounds, reach, round_below, scaled};
 use super::framing::{Aim, CameraSettings, FRAME, FieldOfView, FramingError, PictureProjection};
@@ -23,6 +24,8 @@ const FRAMED_FOV_DEG: std::ops::RangeInclusive<f64> = 1e-6..=179.0;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OutsideCamera {
     pub(super) camera: Camera,
+    /// The direction in which the camera looks, of any length.
+    look: DVec3,
     /// The position of the camera, in scene units.
     pub(super) place: DVec3,
     /// The height of the picture at the distance of the camera's target, in scene units.
@@ -31,6 +34,27 @@ pub(super) struct OutsideCamera {
     pub(super) has_scale: bool,
     /// The length of the observer's axes, in scene units.
     pub(super) axes: f64,
+}
+
+/// Where a camera outside is, from which it can be made again: all that depends on what it has to show.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Outlook {
+    place: DVec3,
+    look: DVec3,
+    height: f64,
+    axes: f64,
+}
+
+impl OutsideCamera {
+    pub(super) fn outlook(&self) -> Outlook {
+        Outlook {
+            place: self.place,
+            look: self.look,
+            height: self.height,
+            axes: self.axes,
+        }
+    }
 }
 
 /// The lists of positions, in the observer's frame and in scene units, that cameras outside have to show, one for each.
@@ -71,10 +95,7 @@ impl CameraSettings {
         from: Option<DVec3>,
         frames: &[Vec<DVec3>],
     ) -> Result<Vec<OutsideCamera>, FramingError> {
-        let fov = match self.field_of_view {
-            FieldOfView::Degrees(fov) => fov,
-            FieldOfView::Fitting => OUTSIDE_FOV_DEG,
-        };
+        let fov = self.outside_fov_deg();
         let target = match self.aim {
             Aim::Target(target) => Some(target),
             _ => None,
@@ -117,15 +138,39 @@ impl CameraSettings {
                 Aim::Look(look) => look,
                 _ => target - place,
             };
-            Ok(OutsideCamera {
-                camera: self.camera(fov, look, from)?,
+            let axes = round_below(height / 5.0);
+            let outlook = Outlook {
                 place,
+                look,
                 height,
-                has_scale: self.projection != PictureProjection::FullSky,
-                axes: round_below(height / 5.0),
-            })
+                axes,
+            };
+            self.outside_camera(from, outlook)
         };
         framed.into_iter().map(outside).collect()
+    }
+
+    /// The camera of these settings that was found before.
+    pub(super) fn outside_camera(
+        &self,
+        from: Option<DVec3>,
+        found: Outlook,
+    ) -> Result<OutsideCamera, FramingError> {
+        Ok(OutsideCamera {
+            camera: self.camera(self.outside_fov_deg(), found.look, from)?,
+            look: found.look,
+            place: found.place,
+            height: found.height,
+            has_scale: self.projection != PictureProjection::FullSky,
+            axes: found.axes,
+        })
+    }
+
+    fn outside_fov_deg(&self) -> f64 {
+        match self.field_of_view {
+            FieldOfView::Degrees(fov) => fov,
+            FieldOfView::Fitting => OUTSIDE_FOV_DEG,
+        }
     }
 
     fn camera(

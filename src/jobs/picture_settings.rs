@@ -11,6 +11,7 @@ use super::caption::Caption;
 use super::files::file_for_each_step;
 use super::framing::CameraSettings;
 use super::guides::Guides;
+use super::overview::Overview;
 use crate::pipeline::SurfaceOptions;
 use crate::render::{PictureOptions, PictureSize};
 use crate::shape::Color;
@@ -64,6 +65,9 @@ pub struct PictureSettings {
     pub only: Option<Range<usize>>,
     /// The numbers of pictures that are not drawn although they are among these, since they are there already.
     pub skipped: BTreeSet<usize>,
+    /// What was found before by looking at all steps; with `None` they are looked at once more. A sheet, which has no parts,
+    /// takes no notice of it.
+    pub overview: Option<Overview>,
     /// Number of rays along each side of a pixel: N gives N x N rays per pixel. More than 1024 count as 1024.
     pub samples: NonZeroU32,
     /// The colour where nothing is seen.
@@ -91,6 +95,7 @@ impl PictureSettings {
             columns: None,
             only: None,
             skipped: BTreeSet::new(),
+            overview: None,
             samples: NonZeroU32::new(options.samples).unwrap_or(NonZeroU32::MIN),
             background: options.background,
             guides: match view {
@@ -132,12 +137,26 @@ impl PictureSettings {
 
     /// The fingerprint of a picture with these settings, whose scenes, with their files, have this fingerprint.
     pub fn fingerprint(&self, scenes: Fingerprint, number: usize) -> Fingerprint {
+        self.fingerprint_of_all(scenes).with("number", &number)
+    }
+
+    /// The fingerprint of all pictures with these settings, and of their [`Overview`].
+    pub fn fingerprint_of_all(&self, scenes: Fingerprint) -> Fingerprint {
         let whole = Self {
             only: None,
             skipped: BTreeSet::new(),
+            overview: None,
             ..self.clone()
         };
-        scenes.with("pictures", &whole).with("number", &number)
+        scenes.with("pictures", &whole)
+    }
+
+    /// Whether all pictures are of a kind that has an [`Overview`]: each is of one step.
+    pub fn has_overview(&self) -> bool {
+        !matches!(
+            self.view,
+            PictureView::Sheet { .. } | PictureView::Outside { together: true, .. }
+        )
     }
 
     /// The files that [`render_to_files`](super::render_to_files) makes of a scene with `steps` steps, in the order of the pictures: `path`

@@ -12,10 +12,10 @@ use super::grid::Grid;
 use super::layout::{Cell, Page, Shape};
 use super::observer_frame::{ObserverFrame, heading};
 use super::outside_camera::{Contents, OutsideCamera};
+use super::overview::Overview;
 use super::picture_settings::{PictureMethod, PictureSettings, PictureView};
 use super::progress::{Finished, Progress};
 use super::rendered::{RenderError, Rendered};
-use super::seen::sky_of;
 use super::views::Views;
 use crate::pipeline::PlacedScene;
 use crate::render::{Picture, Projection, Textures};
@@ -99,35 +99,27 @@ pub fn render_side_by_side<E: From<RenderError>>(
     progress: &dyn Progress,
     finished: impl FnMut(usize, &Picture) -> Result<(), E>,
 ) -> Result<Rendered, E> {
-    let columns = rows.first().map_or(0, Vec::len);
-    let all: Vec<&Variant> = rows.iter().flatten().collect();
-    let Some(first) = all.first() else {
-        return Err(RenderError::NoScene.into());
+    Table::side_by_side(rows, textures, settings, progress)?.draw(finished)
+}
+
+/// Looks at all steps of the pictures that [`render_side_by_side`] draws, or, of one scene, [`render()`]: what they have in
+/// common. Given in [`PictureSettings::overview`], it spares those who draw a part of the pictures the look at all others.
+///
+/// # Errors
+///
+/// As [`render_side_by_side`].
+pub fn overview(
+    rows: &[Vec<Variant>],
+    textures: &Textures,
+    settings: &PictureSettings,
+    progress: &dyn Progress,
+) -> Result<Overview, RenderError> {
+    let settings = PictureSettings {
+        only: Some(0..0),
+        overview: None,
+        ..settings.clone()
     };
-    if rows.iter().any(|row| row.len() != columns) {
-        return Err(RenderError::Rows.into());
-    }
-    let steps = first.placed.scene().steps().len();
-    let other = |variant: &&&Variant| variant.placed.scene().steps().len() != steps;
-    if let Some(variant) = all.iter().find(other) {
-        let label = variant.label.clone();
-        let found = variant.placed.scene().steps().len();
-        return Err(RenderError::Steps {
-            label,
-            found,
-            steps,
-        }
-        .into());
-    }
-    let shape = Shape {
-        rows: rows.len(),
-        columns,
-    };
-    let views = all
-        .iter()
-        .map(|variant| Views::new(&variant.placed, textures, settings, progress));
-    let labels = all.iter().map(|variant| variant.label.as_str()).collect();
-    Table::new(shape, views.collect(), labels)?.draw(finished)
+    Ok(Table::side_by_side(rows, textures, &settings, progress)?.overview)
 }
 
 /// The views of scenes beside each other, and the pictures that show them.
@@ -138,11 +130,49 @@ struct Table<'a> {
     settings: &'a PictureSettings,
     steps: usize,
     pages: Vec<Page>,
+    overview: Overview,
     /// For each cell, in the order of pictures, rows and columns.
     outside: Vec<OutsideCamera>,
 }
 
 impl<'a> Table<'a> {
+    /// Of rows of scenes.
+    fn side_by_side(
+        rows: &'a [Vec<Variant>],
+        textures: &'a Textures,
+        settings: &'a PictureSettings,
+        progress: &'a dyn Progress,
+    ) -> Result<Self, RenderError> {
+        let columns = rows.first().map_or(0, Vec::len);
+        let all: Vec<&Variant> = rows.iter().flatten().collect();
+        let Some(first) = all.first() else {
+            return Err(RenderError::NoScene);
+        };
+        if rows.iter().any(|row| row.len() != columns) {
+            return Err(RenderError::Rows);
+        }
+        let steps = first.placed.scene().steps().len();
+        let other = |variant: &&&Variant| variant.placed.scene().steps().len() != steps;
+        if let Some(variant) = all.iter().find(other) {
+            let label = variant.label.clone();
+            let found = variant.placed.scene().steps().len();
+            return Err(RenderError::Steps {
+                label,
+                found,
+                steps,
+            });
+        }
+        let shape = Shape {
+            rows: rows.len(),
+            columns,
+        };
+        let views = all
+            .iter()
+            .map(|variant| Views::new(&variant.placed, textures, settings, progress));
+        let labels = all.iter().map(|variant| variant.label.as_str()).collect();
+        Self::new(shape, views.collect(), labels)
+    }
+
     /// Frames all views and finds their exposure; there is at least one.
     fn new(
         shape: Shape,
@@ -160,25 +190,47 @@ impl<'a> Table<'a> {
             .sum::<usize>();
         let rows = settings.camera.size.height() as usize * cells * settings.views_of_a_cell();
         views[0].progress.begin(rows);
-        frame_observer(&mut views)?;
-        expose(&mut views)?;
+        let found = settings
+            .overview
+            .as_ref()
+            .filter(|_| settings.has_overview());
+        let overview = match found {
+            Some(found) => {
+                found.hand_to(&mut views)?;
+                found.clone()
+            }
+            None => Overview::look(&mut views)?,
+        };
         let mut table = Self {
             views,
             labels,
             settings,
             steps,
             pages,
+            overview,
             outside: vec![],
         };
-        table.outside = table.outside_cameras()?;
+        table.outside = match settings.view {
+            PictureView::Observer(_) => vec![],
+            PictureView::Outside { from, .. } => {
+                let cameras = match found {
+                    Some(found) => found.outside_cameras(&table.views, from)?,
+                    None => table.outside_cameras()?,
+                };
+                table.overview.outside = cameras.iter().map(OutsideCamera::outlook).collect();
+                let cells = table.pages.iter().flatten().flatten();
+                cells.map(|cell| cameras[cell.scene]).collect()
+            }
+            PictureView::Sheet { .. } => table.outside_cameras()?,
+        };
         Ok(table)
     }
 
-    /// The cameras outside of all cells, at one distance from the middle of what they show.
+    /// The cameras outside, at one distance from the middle of what they show: one for each scene at all steps, on a sheet one
+    /// for each cell.
     fn outside_cameras(&self) -> Result<Vec<OutsideCamera>, RenderError> {
         let (from, frames) = match self.settings.view {
             PictureView::Observer(_) => return Ok(vec![]),
-            // One camera for each scene, at all steps.
             PictureView::Outside { from, .. } => {
                 let frames = self.views.iter().map(Views::all_framed);
                 (from, frames.collect::<Result<Vec<_>, _>>()?)
@@ -194,14 +246,7 @@ impl<'a> Table<'a> {
             frames: &frames,
             with_axes: self.settings.guides.axes,
         };
-        let cameras = self.settings.camera.outside_cameras(from, contents)?;
-        Ok(match self.settings.view {
-            PictureView::Sheet { .. } => cameras,
-            _ => {
-                let cells = self.pages.iter().flatten().flatten();
-                cells.map(|cell| cameras[cell.scene]).collect()
-            }
-        })
+        Ok(self.settings.camera.outside_cameras(from, contents)?)
     }
 
     fn draw<E: From<RenderError>>(
@@ -353,13 +398,13 @@ impl<'a> Table<'a> {
 }
 
 /// Finds one frame for the observer's pictures of all scenes, if there are such pictures.
-fn frame_observer(all: &mut [Views]) -> Result<(), RenderError> {
+pub(super) fn frame_observer(all: &mut [Views]) -> Result<Option<ObserverFrame>, RenderError> {
     let [first, ..] = all else {
-        return Ok(());
+        return Ok(None);
     };
     let is_sheet = matches!(first.settings.view, PictureView::Sheet { .. });
     if matches!(first.settings.view, PictureView::Outside { .. }) {
-        return Ok(());
+        return Ok(None);
     }
     let scene = first.placed.scene();
     let camera = first
@@ -368,17 +413,16 @@ fn frame_observer(all: &mut [Views]) -> Result<(), RenderError> {
         .for_observer(scene.observer(), is_sheet);
     let heading = heading(first.placed);
     let mut skies = vec![];
-    for views in all.iter() {
-        for step in views.steps() {
-            skies.push(sky_of(&views.framed(step)?));
+    if camera.depends_on_skies() {
+        for views in all.iter() {
+            skies.extend(views.skies()?);
         }
     }
     let frame = ObserverFrame::new(&camera, &skies, heading)?;
     for views in all {
-        views.frame = Some(frame);
-        views.rendered.frame = Some(frame.facts());
+        views.set_frame(Some(frame));
     }
-    Ok(())
+    Ok(Some(frame))
 }
 
 /// How the observer's pictures of a scene are framed and exposed where nothing else is asked for.

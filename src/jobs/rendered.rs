@@ -43,6 +43,9 @@ pub enum RenderError {
         /// Number of steps of the first scene.
         steps: usize,
     },
+    /// An overview is not of these scenes and settings.
+    #[error("the overview is of other scenes or settings")]
+    Overview,
     /// There are no photosurfaces.
     #[error(transparent)]
     PlacedScene(#[from] PlacedSceneError),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
 use super::extent::{middle_of_sky, outermost};
 use super::ghosts::{Ghost, ghosts};
@@ -46,7 +47,7 @@ pub(super) struct Views<'a> {
     /// What the scene calls for, if it does.
     effects: Option<PictureEffects>,
     /// The frame of the observer's pictures, once it is known.
-    pub(super) frame: Option<ObserverFrame>,
+    frame: Option<ObserverFrame>,
     /// The first step whose photosurfaces have not been counted yet.
     next_step: usize,
     pub(super) rendered: Rendered,
@@ -95,6 +96,12 @@ impl<'a> Views<'a> {
         }
     }
 
+    /// Sets the frame of the observer's pictures, if there are any.
+    pub(super) fn set_frame(&mut self, frame: Option<ObserverFrame>) {
+        self.frame = frame;
+        self.rendered.frame = frame.map(|frame| frame.facts());
+    }
+
     /// Sets the exposure of all views.
     pub(super) fn set_exposure(&mut self, stops: Stops) {
         self.effects = self
@@ -138,12 +145,17 @@ impl<'a> Views<'a> {
         Ok(moment.ok_or(PlacedSceneError::Step { step, steps })?)
     }
 
+    /// The directions, as unit vectors, that the observer's pictures have to show, for each step.
+    pub(super) fn skies(&self) -> Result<Vec<Vec<DVec3>>, RenderError> {
+        let steps = self.steps().into_par_iter();
+        steps.map(|step| Ok(sky_of(&self.framed(step)?))).collect()
+    }
+
     /// The positions, in the observer's frame, that one camera outside has to have in the picture for all steps.
     pub(super) fn all_framed(&self) -> Result<Vec<DVec3>, RenderError> {
-        let mut all = Vec::new();
-        for step in self.steps() {
-            all.extend(self.framed_outside(step)?);
-        }
+        let steps = self.steps().into_par_iter();
+        let each = steps.map(|step| self.framed_outside(step));
+        let mut all = each.collect::<Result<Vec<_>, _>>()?.concat();
         let marker = self.placed.marker();
         if let Some((low, high)) = marker.and_then(|part| part.mesh().bounds()) {
             all.extend([low, high]);

@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DVec2, DVec3};
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::spacetime::unit;
@@ -18,7 +19,8 @@ pub struct PictureSize {
 }
 
 /// How directions are laid out on a picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Projection {
     /// A pinhole camera: straight lines stay straight.
     Perspective {

@@ -8,6 +8,8 @@ import threading
 import time
 from pathlib import Path
 
+from distributed import Client
+
 # Of the environment, workers get no more than they need: nothing by which they could find what was not sent.
 KEPT = ("PATH", "HOME", "LANG", "TMPDIR", "VIRTUAL_ENV")
 
@@ -38,18 +40,67 @@ class Cluster:
         self.start(name, "dask_worker", self.address, "--nthreads", 1, "--no-nanny", "--no-dashboard", "--host", "127.0.0.1",
                    "--name", name, "--local-directory", self.folder / name, "--death-timeout", 60, **options)
 
+    def ready(self, *names):
+        """Waits until the scheduler has these workers."""
+        self.until(lambda there: there >= set(names), f"not all of {names} are there")
+
     def kill(self, name):
+        """Kills a worker, and waits until the scheduler knows that it is gone."""
+        self.end(name)
+        self.until(lambda there: name not in there, f"{name} is still there")
+
+    def until(self, happened, otherwise, seconds=60):
+        end = time.monotonic() + seconds
+        with Client(self.address, set_as_default=False, timeout=seconds) as client:
+            while not happened({worker["name"] for worker in client.scheduler_info(-1)["workers"].values()}):
+                assert time.monotonic() < end, f"{otherwise}\n{self.logs()}"
+                time.sleep(0.05)
+
+    def end(self, name):
         process = self.processes.pop(name)
         process.kill()
         process.wait()
 
     def close(self):
         for name in list(self.processes):
-            self.kill(name)
+            self.end(name)
 
     def logs(self):
         logs = self.folder.glob("*/log.txt")
         return "\n".join(f"--- {log}\n{log.read_text(errors='replace')[-3000:]}" for log in logs)
+
+
+class Gate:
+    """A program that does all parts at once but those from some step on, which wait until the gate is opened.
+
+    So what happens to parts that are at work happens to them, however fast or slow the machine is.
+    """
+
+    def __init__(self, folder, binary, first):
+        self.shut, self.waiting = folder / "shut", folder / "waiting"
+        self.shut.touch()
+        self.waiting.mkdir()
+        self.program = folder / "gate"
+        # A part whose worker is gone does not wait for it.
+        self.program.write_text(
+            "#!/bin/sh\n"
+            f'from=${{2#--only=}}; from=${{from%%..*}}\n'
+            f'case "$2" in --only=*) if [ "$from" -ge {first} ]; then\n'
+            f'  : >"{self.waiting}/$PPID"\n'
+            f'  while [ -e "{self.shut}" ]; do kill -0 $PPID || exit 1; sleep 0.05; done\n'
+            "fi ;; esac\n"
+            f'exec "{binary}" "$@"\n')
+        self.program.chmod(0o755)
+
+    def held(self, workers, seconds=60):
+        """Waits until each of so many workers has a part at the gate."""
+        end = time.monotonic() + seconds
+        while len(list(self.waiting.iterdir())) < workers:
+            assert time.monotonic() < end, f"no {workers} workers wait"
+            time.sleep(0.01)
+
+    def open(self):
+        self.shut.unlink()
 
 
 class Wire:

@@ -12,7 +12,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from cluster import Cluster, Run, Wire
+from cluster import Cluster, Gate, Run, Wire
 
 BINARY = os.environ["PHOTOSURFACE_BINARY"]
 MESH = Path(__file__).resolve().parents[2] / "fixtures" / "meshes" / "asteroid.glb"
@@ -32,6 +32,7 @@ def cluster(tmp_path_factory):
     cluster = Cluster(tmp_path_factory.mktemp("cluster"))
     for name in ("one", "two", "three"):
         cluster.worker(name)
+    cluster.ready("one", "two", "three")
     yield cluster
     print(cluster.logs())
     cluster.close()
@@ -96,31 +97,38 @@ def notes(chunks):
     return "\n".join(note for row in chunks for note in row["notes"])
 
 
-def test_a_film_while_a_worker_is_killed(cluster, here, expected):
+def test_a_film_while_a_worker_is_killed(cluster, here, expected, tmp_path_factory):
     files = expected(FILM)
     assert len(files) == 300
-    run = Run(here, cluster.address, *FILM, "--program", BINARY, "--chunk", 10, "--film", "film.gif")
+    gate = Gate(tmp_path_factory.mktemp("gate"), BINARY, 30)
+    run = Run(here, cluster.address, *FILM, "--program", gate.program, "--chunk", 10, "--film", "film.gif")
     run.when("out/frame_step*.png", 30)
+    gate.held(3)
     cluster.kill("two")
+    gate.open()
     chunks = finished(run, here, files, range(300))
     assert "was lost, done by another" in notes(chunks), chunks
     cluster.worker("two")
+    cluster.ready("two")
     # The film is that of the frames of one machine.
     frames = sorted(map(str, (here / "out").iterdir()))
     subprocess.run([BINARY, "join", *frames, "-o", here / "alone.gif", "-q"], check=True)
     assert (here / "film.gif").read_bytes() == (here / "alone.gif").read_bytes()
 
 
-def test_a_sweep_over_a_bad_wire(cluster, here, expected):
+def test_a_sweep_over_a_bad_wire(cluster, here, expected, tmp_path_factory):
     """The client's wire to the scheduler is held still for some seconds, later cut, and mended."""
     files = expected(SWEEP)
     assert len(files) == RUNS
     wire = Wire(cluster.port)
-    run = Run(here, wire.address, *SWEEP, "--program", BINARY, "--chunk", 10)
+    gate = Gate(tmp_path_factory.mktemp("gate"), BINARY, 60)
+    run = Run(here, wire.address, *SWEEP, "--program", gate.program, "--chunk", 10)
     run.when("out/*.glb", 20)
     wire.hold(3)
     run.when("out/*.glb", 60)
+    gate.held(3)
     wire.cut(3)
+    gate.open()
     chunks = finished(run, here, files, range(RUNS))
     assert "connection to the scheduler was lost, tried again" in notes(chunks), chunks
 
@@ -140,6 +148,7 @@ def test_a_full_disk(cluster, here, expected):
     try:
         # Without the right to mount a small disk, the process itself may write no large file.
         cluster.worker("full", before=None if is_mounted else no_room)
+        cluster.ready("full")
         run = Run(here, cluster.address, *SWEEP, "--program", BINARY, "--chunk", 5)
         chunks = finished(run, here, files, range(RUNS))
     finally:
@@ -163,6 +172,7 @@ def test_half_copied_files(cluster, here, expected, tmp_path_factory):
         cluster.kill(name)
         cluster.worker(name, path=right)
     cluster.worker("half", path=wrong)
+    cluster.ready("one", "two", "three", "half")
     os.environ["PATH"], before = f"{right}:{os.environ['PATH']}", os.environ["PATH"]
     try:
         words = [*FILM, "--resume", "--program", "shared-name", "--chunk", 10]
@@ -181,6 +191,33 @@ def test_half_copied_files(cluster, here, expected, tmp_path_factory):
         assert (out / "frame_step100.png").stat().st_mtime_ns == kept.st_mtime_ns
     finally:
         os.environ["PATH"] = before
+
+
+def test_parts_of_a_film_take_what_was_found_once(cluster, here, expected):
+    """The client looks at all steps once; no part does. The exposure depends on all of them, as the camera does."""
+    scene = SCENE | {"effects": {"searchlight": True, "exposure": "auto"}}
+    words = ["render", "lit.json", "--steps=-6..6/60", "--size", "32x18", "--samples", "1", "-o", "out/frame.png"]
+    (here / "lit.json").write_text(json.dumps(scene))
+    subprocess.run([BINARY, *words, "-q"], cwd=here, check=True)
+    files = contents(here)
+    for name in files:
+        (here / "out" / name).unlink()
+    # On every worker, the program tells how it was called.
+    told = here / "told.txt"
+    program = here / "told-name"
+    program.write_text("#!/bin/sh\n" f'echo "$@" >>"{told}"\n' f'exec "{BINARY}" "$@"\n')
+    program.chmod(0o755)
+    finished(Run(here, cluster.address, *words, "--program", program, "--chunk", 20), here, files, range(60))
+    calls = told.read_text().splitlines()
+    assert sum("--plan" in call.split() for call in calls) == 1, calls
+    parts = [call for call in calls if "--only" in call]
+    assert len(parts) == 3 and all("--planned=" in call for call in parts), calls
+    # A plan that is damaged on its way is an error, and nothing is drawn by it.
+    plan = json.loads(subprocess.run([BINARY, *words, "--plan"], cwd=here, check=True, capture_output=True).stdout)
+    plan["overview"]["found"]["exposure"] += 1
+    (here / "plan.json").write_text(json.dumps(plan))
+    wrong = subprocess.run([BINARY, *words, "--only=0..1", "--planned=plan.json"], cwd=here, capture_output=True, text=True)
+    assert wrong.returncode == 2 and "is damaged" in wrong.stderr, wrong.stderr
 
 
 def test_what_cannot_be_done_is_said(cluster, here):

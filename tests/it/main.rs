@@ -78,6 +78,7 @@ mod render {
     mod golden;
     mod lamps;
     mod one_call;
+    mod overview;
     mod pictures;
 }
 
@@ -94,6 +95,7 @@ mod cli {
     mod models;
     mod normals;
     mod parts;
+    mod planned;
     mod render;
     mod sweep;
 }

@@ -156,7 +156,7 @@ fn configured(
     if !is_film && !flags.contains_key("output") {
         flags.insert("output".to_owned(), own.to_string_lossy().into());
     }
-    for flag in ["plan", "progress", "threads"] {
+    for flag in ["plan", "planned", "progress", "threads"] {
         ensure!(
             !flags.contains_key(flag),
             "\"{flag}\" is for the whole sweep, expected it on the command line"
@@ -164,7 +164,10 @@ fn configured(
     }
     flags.insert("quiet".to_owned(), true.into());
     flags.insert("resume".to_owned(), (common.resume && !is_film).into());
-    flags.insert("plan".to_owned(), common.plan.into());
+    if common.plan {
+        // Runs are not made in parts, so that none needs an overview.
+        flags.insert("plan".to_owned(), "files".into());
+    }
     let mut arguments = vec![command.to_owned()];
     for (flag, value) in flags {
         arguments.extend(argument(&flag, value)?);
@@ -254,7 +257,7 @@ pub(in crate::cli) fn json_schema() -> Value {
         let Some(flag) = argument.get_long() else {
             continue;
         };
-        if ["plan", "progress", "resume", "quiet", "verbose"].contains(&flag) {
+        if ["plan", "planned", "progress", "resume", "quiet", "verbose"].contains(&flag) {
             continue;
         }
         let help = argument.get_help().map(ToString::to_string);

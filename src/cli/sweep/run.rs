@@ -260,6 +260,7 @@ fn plan<'a>(
     let plan = Plan {
         version: env!("CARGO_PKG_VERSION"),
         of,
+        overview: None,
         inputs,
         outputs,
     };
