@@ -138,29 +138,31 @@ impl Facet {
         self.motion.share(self.normal, offset.normalize_or_zero())
     }
 
-    /// Whether triangles on a piece of an edge between these offsets, with this gap, will hardly count with their gaps: on
-    /// the piece the normals of the photosurface turn little, and so they do along a ray.
-    pub(super) fn is_plain(&self, offsets: &[DVec3], gap: f64) -> bool {
+    /// The largest gap of triangles on a piece of an edge between these offsets that will hardly count with their gaps: on
+    /// the piece the normals of the photosurface turn little, and so they do along a ray; zero where they turn too much.
+    pub(super) fn plain_gap(&self, offsets: &[DVec3]) -> f64 {
         /// Sine of the angle by which normals may turn along an edge: half of what they may within a triangle.
         const TURN: f64 = 0.15;
         if self.is_upright {
-            return true;
+            return f64::INFINITY;
         }
         let normals = offsets.iter().map(|offset| {
             self.motion
                 .seen_normal(self.normal, offset.normalize_or_zero())
         });
         let mut first: Option<DVec3> = None;
-        let reach = 2.0 * self.motion.gamma_beta * gap;
-        normals.zip(offsets).all(|(normal, offset)| {
+        let gaps = normals.zip(offsets).map(|(normal, offset)| {
             let length = normal.length();
             let from = *first.get_or_insert(normal);
             let turns = normal.cross(from).length() > TURN * length * from.length();
+            if turns || !(normal.dot(from) > 0.0) {
+                return 0.0;
+            }
             // As `is_steady`, with room.
-            let is_steady =
-                self.motion.gamma_beta * reach <= 0.5 * STEADY * length * length * offset.length();
-            !turns && normal.dot(from) > 0.0 && is_steady
-        })
+            let reach = 0.5 * STEADY * length * offset.length() / self.motion.gamma_beta;
+            0.5 * length * reach / self.motion.gamma_beta
+        });
+        gaps.fold(f64::INFINITY, f64::min)
     }
 
     /// About how far a ray of this length, as a gap, leads in the rest frame.

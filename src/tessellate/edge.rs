@@ -53,17 +53,14 @@ impl EdgeRule<'_> {
             let Some(facet) = facet else {
                 return EDGE_SHARE;
             };
+            let shares = offsets.iter().map(|&offset| facet.share(offset));
+            let inside = FREE_SHARE / shares.fold(0.0, f64::max);
             let share = match self.is_free {
-                true => {
-                    let shares = offsets.iter().map(|&offset| facet.share(offset));
-                    FREE_SHARE / shares.fold(0.0, f64::max)
-                }
-                false => rim_share(facet) / rim_gap_share(motion, offsets, along),
+                true => inside,
+                false => inside.min(rim_share(facet) / rim_gap_share(motion, offsets, along)),
             };
-            match share > EDGE_SHARE && facet.is_plain(offsets, allowed * share / EDGE_SHARE) {
-                true => share,
-                false => EDGE_SHARE,
-            }
+            let plain = EDGE_SHARE * (facet.plain_gap(offsets) / allowed);
+            share.min(plain.max(EDGE_SHARE))
         };
         let shares = self.facets.iter().map(of_facet);
         allowed * shares.reduce(f64::min).unwrap_or(EDGE_SHARE)

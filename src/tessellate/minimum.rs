@@ -400,7 +400,7 @@ mod tests {
         let velocity = Velocity::from_gamma(20.0, DVec3::new(1.0, 0.1, 0.2)).unwrap();
         let motion = Motion::new(velocity);
         for motion in [None, Some(&motion)] {
-            for step in 0..60 {
+            for step in 1..60 {
                 let wave = |factor: f64| (f64::from(step) * factor).sin();
                 let place = DVec3::new(1.5 * wave(1.7), 1.5 * wave(0.9), 0.1 + wave(0.31).powi(2));
                 let size = 0.8f64.powi(step % 12);

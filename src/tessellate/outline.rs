@@ -223,6 +223,11 @@ impl Need {
                     * of_points(offsets, minimum, allowance, motion)
             }
         };
+        // Where surfaces cannot be proven with about so many points, points do not help at all.
+        let minimum = match (judge, motion) {
+            (Some(_), Some(_)) if is_divided => minimum_triangles(offsets, allowance, motion),
+            _ => minimum,
+        };
         Self {
             is_divided,
             gap,
