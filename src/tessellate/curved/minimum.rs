@@ -28,8 +28,11 @@ const SMALL: f64 = 0.01;
 /// How many triangles are made for each that the metric asks for: the fronts meet, and round numbers fit nowhere. Of few
 /// triangles more are made: about as many as along so many lines across the piece. Both are measured, for surfaces and for
 /// points.
-const MADE: [f64; 2] = [1.2, 1.05];
-const LINES: [f64; 2] = [4.5, 2.0];
+const MADE: [f64; 2] = [1.25, 1.1];
+const LINES: [f64; 2] = [5.0, 2.5];
+
+/// How many triangles of a piece, times `gamma beta`, are made because places slide along the surface as seen: measured.
+const SLIDES: f64 = 25.0;
 
 /// The numbers of triangles for one sight.
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +73,12 @@ pub(crate) fn needed(shape: &Shape, sight: &Sight, about: About) -> Needed {
             true => 0.0,
             false => integral.sums[1] + LINES[of_measure] * integral.sums[1].sqrt(),
         };
-        needed.predicted += MADE[of_measure] * wanted + of_rims(&|rim| chords[rim][1]);
+        let slides = if wanted > 0.0 {
+            SLIDES * sight.gamma_beta
+        } else {
+            0.0
+        };
+        needed.predicted += slides + MADE[of_measure] * wanted + of_rims(&|rim| chords[rim][1]);
     }
     needed
 }

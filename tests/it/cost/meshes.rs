@@ -136,8 +136,8 @@ fn uniform_subdivision_needs_more_close_by() {
     assert!(carried_out > 0);
 }
 
-/// What facets miss of a round shape is measured against the true shape: seen by an observer at rest that is all that
-/// there is, and nine tenths of what is proven (the tests of the shapes).
+/// What triangles miss of a round shape is measured against the true shape: seen by an observer at rest that is all that
+/// there is, and what is proven of it is hardly more.
 #[test]
 fn round_shapes_are_measured_against_the_true_surface() {
     let workplace = Workplace::new();
@@ -145,8 +145,7 @@ fn round_shapes_are_measured_against_the_true_surface() {
     let study = study(&workplace, "scene.json -q --tolerances abs:1e-2,abs:1e-3");
     for row in rows(&study) {
         assert_consistent(row);
-        assert_eq!(number(row, "/made/gap"), 0.0);
-        // Of an ellipsoid twice as wide the facets' distance is at most twice the ball's, and it is so at its ends only.
+        assert!(number(row, "/made/gap") > 0.9 * number(row, "/made/bound"));
         let over = number(row, "/made/error_over_bound");
         assert!((0.8..1.0).contains(&over), "{row:#}");
     }

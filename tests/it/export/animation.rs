@@ -22,7 +22,11 @@ const SCENE: &str = r#"{
   "tolerance": { "relative": 3e-3 } }"#;
 
 fn placed() -> PlacedScene {
-    let scene = Scene::from_json(SCENE).expect("a scene");
+    placed_scene(SCENE)
+}
+
+fn placed_scene(json: &str) -> PlacedScene {
+    let scene = Scene::from_json(json).expect("a scene");
     let (models, _) = load_models(&scene, "".as_ref()).expect("nothing to read");
     PlacedScene::new(scene, models).expect("one model an object")
 }
@@ -36,8 +40,48 @@ fn morphing(placed: &PlacedScene) -> Vec<Vec<Photosurface>> {
     placed.morphing(wanted).collect()
 }
 
+/// The place of a round object of the scene that is next to a place at rest, both relative to the object's origin; the place
+/// itself for the flat one.
+fn on_surface(name: &str, place: DVec3) -> DVec3 {
+    match name {
+        "ball" => place.normalize(),
+        "rod" => {
+            let (radius, half) = (0.1, 1.5);
+            let (level, height) = (place.with_y(0.0), place.y);
+            let side = level.normalize() * radius + DVec3::Y * height.clamp(-half, half);
+            let lid = level.clamp_length_max(radius) + DVec3::Y * half.copysign(height);
+            match place.distance(side) <= place.distance(lid) {
+                true => side,
+                false => lid,
+            }
+        }
+        _ => place,
+    }
+}
+
+/// The least distance of a drawn place from where places of the surface around one at rest are seen.
+fn distance_of(name: &str, view: &View, rest: DVec3, drawn: DVec3) -> f64 {
+    let mut at = on_surface(name, rest);
+    let mut nearest = view.seen_position(at).distance(drawn);
+    // On the flat object the certificate is about the very same point.
+    let mut step = if name == "wall" { 0.0 } else { 0.1 };
+    while step > 1e-9 {
+        let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+        let moves = axes
+            .iter()
+            .flat_map(|axis| [at + *axis * step, at - *axis * step]);
+        let moves = moves.map(|place| on_surface(name, place));
+        let moves = moves.map(|place| (view.seen_position(place).distance(drawn), place));
+        match moves.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((distance, place)) if distance < nearest => (nearest, at) = (distance, place),
+            _ => step *= 0.5,
+        }
+    }
+    nearest
+}
+
 /// One mesh at rest is within the tolerance at every step: random points of it, mapped, are within the certificate
-/// of where the flat triangles between mapped corners have them.
+/// of where the flat triangles between mapped corners have them; those of a round object are next to its surface.
 #[test]
 fn one_mesh_is_within_the_tolerance_at_every_step() {
     let placed = placed();
@@ -65,9 +109,8 @@ fn one_mesh_is_within_the_tolerance_at_every_step() {
                     let points = corners.map(|corner| points[corner as usize]);
                     points[0] * weights[0] + points[1] * weights[1] + points[2] * weights[2]
                 };
-                let error = view
-                    .seen_position(mix(rest))
-                    .distance(mix(surface.mesh.positions()));
+                let drawn = mix(surface.mesh.positions());
+                let error = distance_of(object.name.as_str(), &view, mix(rest), drawn);
                 assert!(
                     error <= gap_and_rounding,
                     "{} {corners:?} {weights:?}: {error} {certificate:?}",
@@ -77,7 +120,7 @@ fn one_mesh_is_within_the_tolerance_at_every_step() {
             }
         }
         assert!(
-            largest > 0.5,
+            largest > 0.3,
             "{}: the bound is far from what happens: {largest}",
             object.name
         );
@@ -304,7 +347,9 @@ fn attributes_are_there_when_asked_for() {
     for names in attributes(&file) {
         assert_eq!(names, all.map(str::to_owned).into());
     }
-    let placed = placed();
+    // What vertices are given is looked at point by point, so that the scene needs other triangles with attributes.
+    let asks = SCENE.replacen('{', r#"{ "attributes": ["radiance"],"#, 1);
+    let placed = placed_scene(&asks);
     let mut meshes = file.json["meshes"].as_array().unwrap().iter();
     let marker = &meshes.next().unwrap()["primitives"][0]["attributes"];
     for name in ["_DOPPLER", "_RADIANCE"] {
