@@ -20,8 +20,8 @@ use crate::mesh::Mesh;
 
 /// After so many rounds everything counts with its gap, so that the last one proves as much as the measure of points.
 /// Each round leaves about a third of the unproven triangles of the one before: those of a mesh of thousands of triangles
-/// near a fast observer took six rounds.
-const MAX_ROUNDS: usize = 12;
+/// near a fast observer took five to six.
+const MAX_ROUNDS: usize = 6;
 
 /// A divided triangle.
 pub(super) struct Outcome {
@@ -41,11 +41,65 @@ pub(super) struct Made {
     pub(super) outcomes: Vec<Outcome>,
 }
 
+/// Up to so many triangles the measure of surfaces tries that of points too, and keeps what has fewer triangles.
+const FEW: usize = 10_000;
+
+impl Made {
+    /// How many triangles are made of all that are looked at.
+    fn count(&self) -> usize {
+        let whole = self.outline.needs.iter().flatten();
+        let whole = whole.filter(|need| !need.is_divided).count();
+        let pieces = self.outcomes.iter();
+        whole
+            + pieces
+                .map(|outcome| outcome.pieces.triangles.len())
+                .sum::<usize>()
+    }
+
+    /// The largest bound as surfaces, as a gap.
+    fn bound(&self) -> f64 {
+        let whole = self.outline.needs.iter().flatten();
+        let whole = whole.filter(|need| !need.is_divided);
+        let whole = whole.map(|need| need.surface);
+        let pieces = self.outcomes.iter().map(|outcome| outcome.surface);
+        whole.chain(pieces).fold(0.0, f64::max)
+    }
+}
+
 /// Divides all triangles for which the outline asks.
 ///
-/// In the measure of surfaces the boundary of a triangle may turn out too coarse for a proof. Then the triangle counts with
-/// its gap, and all is decided anew; triangles for which that changes nothing keep their pieces.
+/// What the measure of surfaces makes of few triangles depends on a triangle more here and there: it is compared with what
+/// that of points makes.
 pub(super) fn make(
+    meshes: &[&Mesh],
+    adjacency: &mut Adjacency,
+    found: &[Survey],
+    observer: DVec3,
+    (allowance, motion): (&Allowance, Option<&Motion>),
+    most_more: u64,
+) -> Made {
+    let measure = (allowance, motion);
+    let made = rounds(meshes, adjacency, found, observer, measure, most_more);
+    if motion.is_none() || made.count() > FEW {
+        return made;
+    }
+    let all: Vec<usize> = (0..adjacency.looked.len()).collect();
+    adjacency.count_with_gaps(&all);
+    let plain = rounds(meshes, adjacency, found, observer, measure, most_more);
+    let allowed = allowance.between(&[DVec3::ZERO]);
+    let is_as_good = plain.bound() <= allowed.max(made.bound());
+    let is_better = plain.count() < made.count() || made.bound() > allowed;
+    match is_as_good && is_better {
+        true => plain,
+        false => made,
+    }
+}
+
+/// Divides all triangles in one measure.
+///
+/// In that of surfaces the boundary of a triangle may turn out too coarse for a proof. Then the triangle counts with
+/// its gap, and all is decided anew; triangles for which that changes nothing keep their pieces.
+fn rounds(
     meshes: &[&Mesh],
     adjacency: &mut Adjacency,
     found: &[Survey],
@@ -70,7 +124,7 @@ pub(super) fn make(
         }
         spread_cuts(&mut outline, &mut outcomes);
         rounds += 1;
-        let mut unproven = unproven(meshes, adjacency, &outline, &outcomes, observer);
+        let mut unproven = unproven(meshes, adjacency, (&outline, &outcomes), observer, rounds);
         if unproven.is_empty() || rounds > MAX_ROUNDS {
             return Made { outline, outcomes };
         }
@@ -197,13 +251,14 @@ fn spread_cuts(outline: &mut Outline, outcomes: &mut [Outcome]) {
 }
 
 /// The triangles in the list `looked` that should count with their gaps because some bound is too large: those which no
-/// ray may pass, if the piece of a plane has any, else those whose own bound it is.
+/// ray may pass, if the piece of a plane has any, else those whose own bound it is; after the first of the `rounds` all of
+/// that piece and what shares an edge with it.
 fn unproven(
     meshes: &[&Mesh],
     adjacency: &Adjacency,
-    outline: &Outline,
-    outcomes: &[Outcome],
+    (outline, outcomes): (&Outline, &[Outcome]),
     observer: DVec3,
+    rounds: usize,
 ) -> Vec<usize> {
     let regions = &outline.rims.regions;
     let mut of_divided = outcomes.iter();
@@ -231,13 +286,26 @@ fn unproven(
         fails[region as usize] |= is_too_large;
         is_cut[region as usize] |= cut > 0.0;
     }
-    let unproven = all.iter().zip(regions).enumerate();
-    let unproven = unproven.filter_map(|(number, (&(is_too_large, cut), &region))| {
-        let region = region as usize;
-        let counts = fails[region] && (is_too_large && !is_cut[region] || cut > 0.0);
-        counts.then_some(number)
-    });
-    unproven.collect()
+    let causes = all.iter().zip(regions);
+    let mut causes: Vec<bool> = causes
+        .map(|(&(is_too_large, cut), &region)| {
+            let region = region as usize;
+            fails[region] && (rounds > 1 || is_too_large && !is_cut[region] || cut > 0.0)
+        })
+        .collect();
+    if rounds > 1 {
+        let before = causes.clone();
+        for edge in &adjacency.edges {
+            let mut members = edge.members.iter();
+            if members.any(|member| before[member.looked as usize]) {
+                for member in &edge.members {
+                    causes[member.looked as usize] = true;
+                }
+            }
+        }
+    }
+    let judged = |&number: &usize| causes[number] && outline.rims.judge(number).is_some();
+    (0..causes.len()).filter(judged).collect()
 }
 
 /// The boundary of a triangle, counter-clockwise from the first corner on: the vertices' indices, and the vertices as
