@@ -323,9 +323,10 @@ impl PlacedScene {
         })
     }
 
-    /// Which distance the tolerance of an object with these parts limits: what the scene says, else that of points if a
-    /// part has a texture or colours, if vertices get attributes, or if effects colour them, and else that of surfaces.
-    /// For flat facets, tolerances that are angles limit the distance of points, whose bound holds for surfaces as well.
+    /// Which distance the tolerance of an object with these parts limits: what the scene says, else that of surfaces for a
+    /// round shape without texture and colours, in a scene without attributes of vertices and effects that colour them, and
+    /// else that of points. For flat facets, tolerances that are angles limit the distance of points, whose bound holds for
+    /// surfaces as well.
     pub fn measure(&self, object: &Object, parts: &[(String, Part)]) -> Measure {
         let is_round = match &object.source {
             Source::Shape(shape, _) => shape.is_curved(),
@@ -341,9 +342,9 @@ impl PlacedScene {
         };
         object.measure.unwrap_or_else(|| {
             let of_scene = !self.scene.attributes().is_empty() || self.scene.effects().colors();
-            match of_scene || parts.iter().any(|(_, part)| has_points(part)) {
-                true => Measure::Points,
-                false => Measure::Surface,
+            match is_round && !of_scene && !parts.iter().any(|(_, part)| has_points(part)) {
+                true => Measure::Surface,
+                false => Measure::Points,
             }
         })
     }

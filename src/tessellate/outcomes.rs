@@ -20,8 +20,8 @@ use crate::mesh::Mesh;
 
 /// After so many rounds everything counts with its gap, so that the last one proves as much as the measure of points.
 /// Each round leaves about a third of the unproven triangles of the one before: those of a mesh of thousands of triangles
-/// near a fast observer took five to six.
-const MAX_ROUNDS: usize = 6;
+/// near a fast observer took five to six, but each takes as long as points do.
+const MAX_ROUNDS: usize = 3;
 
 /// A divided triangle.
 pub(super) struct Outcome {

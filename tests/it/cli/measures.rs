@@ -3,12 +3,15 @@
 use crate::common::command::Workplace;
 use serde_json::Value;
 
-/// A plate that holds the motion, and a checkered one like it.
-fn plates(scene: &str, object: &str) -> String {
+const PLATE: &str = r#"{ "grid": { "size": 2, "cells": 1 } }, "position": [0, -1, 0]"#;
+const BALL: &str = r#"{ "sphere": { "radius": 1 } }, "position": [0, -2, 0]"#;
+
+/// An object without a picture, and a checkered plate that holds the motion.
+fn two(shape: &str, scene: &str, object: &str) -> String {
     format!(
         r##"{{ "observer": {{ "velocity": {{ "beta": 0.6, "direction": [1, 0, 0] }} }}, {scene}
   "objects": [
-    {{ "name": "plain", "shape": {{ "grid": {{ "size": 2, "cells": 1 }} }}, "position": [0, -1, 0] {object} }},
+    {{ "name": "plain", "shape": {shape} {object} }},
     {{ "name": "checkered", "shape": {{ "grid": {{ "size": 2, "cells": 1 }} }}, "position": [0, 1, 0],
       "color": "#ffffff", "checker": "#000000" }} ],
   "tolerance": {{ "absolute": 1e-3 }} }}"##
@@ -23,7 +26,7 @@ fn the_measure_is_that_of_flag_object_scene_or_default() {
         ("", "", "--measure points", ["points", "points"]),
         ("", "", "--measure surface", ["surface", "surface"]),
         ("", "", "--attributes doppler", ["points", "points"]),
-        ("", "", "--tolerance deg:0.1", ["points", "points"]),
+        ("", "", "--tolerance deg:0.1", ["surface", "points"]),
         (
             r#""effects": { "doppler": "ramp" },"#,
             "",
@@ -44,7 +47,7 @@ fn the_measure_is_that_of_flag_object_scene_or_default() {
             ["surface", "surface"],
         ),
     ] {
-        workplace.write("scene.json", plates(scene, object));
+        workplace.write("scene.json", two(BALL, scene, object));
         workplace
             .run(&format!(
                 "export scene.json -o out.glb --report report.json {flags}"
@@ -89,7 +92,7 @@ fn the_measure_is_that_of_flag_object_scene_or_default() {
 #[test]
 fn a_surface_takes_fewer_triangles_where_the_motion_runs_along_it() {
     let workplace = Workplace::new();
-    workplace.write("scene.json", plates("", ""));
+    workplace.write("scene.json", two(PLATE, "", ""));
     let triangles = |measure: &str| {
         let line = format!(
             "cost scene.json --only meshes --measure {measure} --tolerances abs:1e-3 --repeats 1 --json cost.json"
@@ -108,7 +111,7 @@ fn a_surface_takes_fewer_triangles_where_the_motion_runs_along_it() {
     workplace
         .run("export scene.json --measure area -o x.glb")
         .error(&wrong);
-    workplace.write("wrong.json", plates(r#""measure": "area","#, ""));
+    workplace.write("wrong.json", two(PLATE, r#""measure": "area","#, ""));
     workplace
         .run("check wrong.json")
         .error(&["wrong.json", "expected points or surface"]);
