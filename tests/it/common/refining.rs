@@ -32,6 +32,60 @@ pub(crate) struct Sighted {
     pub(crate) rest: Vec<DVec3>,
 }
 
+/// The least distance of a drawn place from a surface as it is seen; `seen` tells where the place of the surface is seen that is
+/// next to one at rest. From `rest` and places beside it, the steps of Levenberg and Marquardt follow the two `sides` at rest:
+/// also where the photosurface is stretched so much that no step along an axis leads nearer.
+pub(crate) fn nearest_distance(
+    seen: impl Fn(DVec3) -> DVec3,
+    rest: DVec3,
+    sides: [DVec3; 2],
+    drawn: DVec3,
+) -> f64 {
+    const STARTS: [[f64; 2]; 5] = [
+        [0.0, 0.0],
+        [0.2, 0.1],
+        [-0.2, -0.1],
+        [0.1, -0.2],
+        [-0.1, 0.2],
+    ];
+    let at = |[s, t]: [f64; 2]| seen(rest + sides[0] * s + sides[1] * t) - drawn;
+    let mut least = f64::INFINITY;
+    for mut here in STARTS {
+        let (mut off, mut damping) = (at(here), 1e-3);
+        for _ in 0..60 {
+            let difference = |step: [f64; 2]| {
+                const STEP: f64 = 1e-5;
+                let [ahead, behind] =
+                    [STEP, -STEP].map(|h| at([here[0] + step[0] * h, here[1] + step[1] * h]));
+                (ahead - behind) / (2.0 * STEP)
+            };
+            let (u, v) = (difference([1.0, 0.0]), difference([0.0, 1.0]));
+            let (uu, vv) = (u.dot(u) * (1.0 + damping), v.dot(v) * (1.0 + damping));
+            let (uv, x, y) = (u.dot(v), u.dot(off), v.dot(off));
+            let determinant = uu * vv - uv * uv;
+            let next = [
+                here[0] - (vv * x - uv * y) / determinant,
+                here[1] - (uu * y - uv * x) / determinant,
+            ];
+            let there = at(next);
+            if there.length() < off.length() {
+                let gain = 1.0 - there.length() / off.length();
+                (here, off, damping) = (next, there, damping * 0.2);
+                if gain < 1e-12 {
+                    break;
+                }
+            } else {
+                damping *= 10.0;
+                if !(damping < 1e12) {
+                    break;
+                }
+            }
+        }
+        least = least.min(off.length());
+    }
+    least
+}
+
 impl Sighting {
     /// With the digits of `f64`, which hide no error.
     pub(crate) fn new(observer: DVec3, velocity: Velocity, tolerance: Tolerance) -> Self {

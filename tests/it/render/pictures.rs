@@ -266,8 +266,8 @@ fn rays_and_photosurfaces_show_the_same_to_within_the_tolerance() {
         let [coarse, .., fine] = counts.as_slice() else {
             unreachable!("six tolerances")
         };
-        // A tolerance 32 times finer; a quarter is what even a lucky coarse mesh must lose.
-        assert!(4 * fine <= *coarse, "{name}: {counts:?}");
+        // A tolerance 32 times finer; two thirds are what even a lucky coarse mesh must lose.
+        assert!(3 * fine <= *coarse, "{name}: {counts:?}");
     }
 }
 

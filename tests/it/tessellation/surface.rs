@@ -173,9 +173,21 @@ fn a_plate_that_holds_the_motion_takes_few_triangles() {
         certificate.ratio >= 1.0 && certificate.ratio <= 2.0,
         "{certificate:?}"
     );
-    let worst = assert_within(&sighting, &before, surface, &mut Random::new(1));
+    assert_within(&sighting, &before, surface, &mut Random::new(1));
     // The rim is nearly as far off as it may be.
-    assert!(worst > 0.3, "{worst}");
+    let mut worst = 0.0f64;
+    for [a, b, c] in corners_of(&before) {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            for k in 0..500 {
+                let place = sighting.seen(from.lerp(to, f64::from(k) / 500.0));
+                worst = worst.max(distance_to_mesh(place, &surface.seen));
+            }
+        }
+    }
+    assert!(
+        worst > 0.3 * certificate.total && worst <= certificate.total,
+        "{worst}"
+    );
 }
 
 #[test]
