@@ -20,8 +20,8 @@ use photosurface::{DVec3, Shape, Source, Tolerance, Velocity};
 const SPEEDS: [f64; 5] = [0.0, 0.5, 0.9, 0.99, 0.999];
 
 fn main() {
-    let tolerance = std::env::args().filter_map(|argument| argument.parse().ok());
-    let tolerance = Tolerance::relative(tolerance.last().unwrap_or(1e-4)).expect("a tolerance");
+    let mut tolerance = std::env::args().filter_map(|argument| argument.parse().ok());
+    let tolerance = Tolerance::relative(tolerance.next_back().unwrap_or(1e-4)).expect("a tolerance");
     let shapes = [
         ("sphere", Shape::sphere(1.0)),
         ("torus", Shape::torus(1.0, 0.25)),

@@ -239,7 +239,7 @@ mod tests {
             let count = made.mesh.triangle_count();
             let least = needed(&shape, &sight, About::Surface);
             assert!(
-                made.bounds[0].iter().all(|&bound| bound <= tolerance),
+                made.bounds[0].iter().all(|&[bound, _]| bound <= tolerance),
                 "{beta}"
             );
             assert!(
@@ -256,10 +256,12 @@ mod tests {
                 for weights in [[1.0 / 3.0; 3], [0.5, 0.5, 0.0], [0.1, 0.2, 0.7]] {
                     let mix = |of: [DVec3; 3]| (0..3).map(|k| of[k] * weights[k]).sum::<DVec3>();
                     let found = distance(&sight, mix(seen), mix(places).normalize());
-                    assert!(
-                        found <= made.bounds[0][index] * (1.0 + 1e-9),
-                        "{beta}: {found}"
-                    );
+                    let [of_surface, of_points] = made.bounds[0][index];
+                    assert!(found <= of_surface * (1.0 + 1e-9), "{beta}: {found}");
+                    // The ray from the centre through the flat place at rest meets the place with the same weights.
+                    let same = sight.seen(mix(places).normalize());
+                    let found = same.distance(mix(seen));
+                    assert!(found <= of_points * (1.0 + 1e-9), "{beta}: {found}");
                 }
             }
         }
@@ -289,7 +291,7 @@ mod tests {
                 "{shape:?}"
             );
             assert!(
-                made.bounds[0].iter().all(|&bound| bound <= 5e-3),
+                made.bounds[0].iter().all(|&[bound, _]| bound <= 5e-3),
                 "{shape:?}"
             );
         }
