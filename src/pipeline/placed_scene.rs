@@ -292,7 +292,7 @@ impl PlacedScene {
         let objects = self.scene.objects().iter().zip(&self.objects);
         objects.map(move |(object, placed_object)| {
             let shown = self.model_view(object, step).expect(A_STEP);
-            let measure = self.measure(object, &placed_object.parts);
+            let measure = self.measure(object);
             let tolerance = (self.scene.tolerance(object), measure);
             Plan::of_facets(placed_object, shown, tolerance, wanted).unrefined()
         })
@@ -323,11 +323,9 @@ impl PlacedScene {
         })
     }
 
-    /// Which distance the tolerance of an object with these parts limits: what the scene says, else that of surfaces for a
-    /// round shape without texture and colours, in a scene without attributes of vertices and effects that colour them, and
-    /// else that of points. For flat facets, tolerances that are angles limit the distance of points, whose bound holds for
-    /// surfaces as well.
-    pub fn measure(&self, object: &Object, parts: &[(String, Part)]) -> Measure {
+    /// Which distance the tolerance of an object limits: what the scene says, else that of points. For flat facets,
+    /// tolerances that are angles limit the distance of points, whose bound holds for surfaces as well.
+    pub fn measure(&self, object: &Object) -> Measure {
         let is_round = match &object.source {
             Source::Shape(shape, _) => shape.is_curved(),
             Source::File(_) | Source::Model(_) => false,
@@ -335,18 +333,7 @@ impl PlacedScene {
         if !is_round && self.scene.tolerance(object).unit() == Unit::Degrees {
             return Measure::Points;
         }
-        let has_points = |part: &Part| {
-            let material = part.material.as_ref();
-            part.mesh().colors().is_some()
-                || material.is_some_and(|material| !material.textures().is_empty())
-        };
-        object.measure.unwrap_or_else(|| {
-            let of_scene = !self.scene.attributes().is_empty() || self.scene.effects().colors();
-            match is_round && !of_scene && !parts.iter().any(|(_, part)| has_points(part)) {
-                true => Measure::Surface,
-                false => Measure::Points,
-            }
-        })
+        object.measure.unwrap_or(Measure::Points)
     }
 
     /// The facts about the scene.
@@ -363,7 +350,7 @@ impl PlacedScene {
     ) -> Plan<'a> {
         let shown = self.model_view(object, step).expect(A_STEP);
         let tolerance = self.scene.tolerance(object);
-        let measure = self.measure(object, &placed_object.parts);
+        let measure = self.measure(object);
         Plan::new(
             placed_object,
             shown,

@@ -103,7 +103,7 @@ impl<'a> Plan<'a> {
             seen,
             is_curved: false,
         };
-        if is_curved && plan.is_worth_curving() {
+        if is_curved && plan.tolerance.measure == Measure::Surface && plan.is_worth_curving() {
             plan.is_curved = true;
         } else {
             plan.take_facets(wanted);

@@ -21,7 +21,8 @@ const SPEEDS: [f64; 5] = [0.0, 0.5, 0.9, 0.99, 0.999];
 
 fn main() {
     let mut tolerance = std::env::args().filter_map(|argument| argument.parse().ok());
-    let tolerance = Tolerance::relative(tolerance.next_back().unwrap_or(1e-4)).expect("a tolerance");
+    let tolerance =
+        Tolerance::relative(tolerance.next_back().unwrap_or(1e-4)).expect("a tolerance");
     let shapes = [
         ("sphere", Shape::sphere(1.0)),
         ("torus", Shape::torus(1.0, 0.25)),

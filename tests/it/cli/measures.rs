@@ -22,11 +22,16 @@ fn two(shape: &str, scene: &str, object: &str) -> String {
 fn the_measure_is_that_of_flag_object_scene_or_default() {
     let workplace = Workplace::new();
     for (scene, object, flags, expected) in [
-        ("", "", "", ["surface", "points"]),
+        ("", "", "", ["points", "points"]),
         ("", "", "--measure points", ["points", "points"]),
         ("", "", "--measure surface", ["surface", "surface"]),
         ("", "", "--attributes doppler", ["points", "points"]),
-        ("", "", "--tolerance deg:0.1", ["surface", "points"]),
+        (
+            "",
+            "",
+            "--measure surface --tolerance deg:0.1",
+            ["surface", "points"],
+        ),
         (
             r#""effects": { "doppler": "ramp" },"#,
             "",

@@ -142,7 +142,10 @@ fn uniform_subdivision_needs_more_close_by() {
 fn round_shapes_are_measured_against_the_true_surface() {
     let workplace = Workplace::new();
     workplace.write("scene.json", BALL_AT_REST);
-    let study = study(&workplace, "scene.json -q --tolerances abs:1e-2,abs:1e-3");
+    let study = study(
+        &workplace,
+        "scene.json -q --measure surface --tolerances abs:1e-2,abs:1e-3",
+    );
     for row in rows(&study) {
         assert_consistent(row);
         assert!(number(row, "/made/gap") > 0.9 * number(row, "/made/bound"));
