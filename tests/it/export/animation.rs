@@ -81,7 +81,7 @@ fn one_mesh_is_within_the_tolerance_at_every_step() {
             assert_eq!(surface.mesh.triangles(), steps[0].mesh.triangles());
             let view = View::new(&placed.scene().moment(step).unwrap(), &object.world_line());
             let rest = surface.vertex_data.rest_positions().expect("asked for");
-            let gap_and_rounding = certificate.measured_gap() + certificate.rounding;
+            let bound = certificate.total;
             for corners in surface.mesh.triangles() {
                 let weights = [0; 3].map(|_| random.between(0.0, 1.0));
                 let weights = weights.map(|weight| weight / weights.iter().sum::<f64>());
@@ -98,11 +98,11 @@ fn one_mesh_is_within_the_tolerance_at_every_step() {
                     _ => nearest_distance(seen, mix(rest), [b - a, c - a], drawn),
                 };
                 assert!(
-                    error <= gap_and_rounding,
+                    error <= bound,
                     "{} {corners:?} {weights:?}: {error} {certificate:?}",
                     surface.facts.name
                 );
-                largest = largest.max(error / gap_and_rounding);
+                largest = largest.max(error / bound);
             }
         }
         assert!(
