@@ -41,8 +41,7 @@ fn morphing(placed: &PlacedScene) -> Vec<Vec<Photosurface>> {
     placed.morphing(wanted).collect()
 }
 
-/// The place of a round object of the scene that is next to a place at rest, both relative to the object's origin; the place
-/// itself for the flat one.
+/// The place of a round object of the scene that is next to a place at rest, both relative to the object's origin.
 fn on_surface(name: &str, place: DVec3) -> DVec3 {
     match name {
         "ball" => place.normalize(),
@@ -56,17 +55,22 @@ fn on_surface(name: &str, place: DVec3) -> DVec3 {
                 false => lid,
             }
         }
-        _ => place,
+        _ => unreachable!("flat"),
     }
 }
 
 /// One mesh at rest is within the tolerance at every step: random points of it, mapped, are within the certificate
-/// of where the flat triangles between mapped corners have them; those of a round object are next to its surface.
+/// of where the flat triangles between mapped corners have them; those of an exact surface are next to it.
 #[test]
 fn one_mesh_is_within_the_tolerance_at_every_step() {
-    let placed = placed();
+    assert_within_at_every_step(&placed());
+    let surfaces = SCENE.replacen('{', r#"{ "measure": "surface","#, 1);
+    assert_within_at_every_step(&placed_scene(&surfaces));
+}
+
+fn assert_within_at_every_step(placed: &PlacedScene) {
     let mut random = Random::new(11);
-    let parts = morphing(&placed);
+    let parts = morphing(placed);
     assert_eq!(parts.len(), 3);
     for (object, steps) in placed.scene().objects().iter().zip(&parts) {
         assert_eq!(steps.len(), 5);
@@ -81,7 +85,8 @@ fn one_mesh_is_within_the_tolerance_at_every_step() {
             assert_eq!(surface.mesh.triangles(), steps[0].mesh.triangles());
             let view = View::new(&placed.scene().moment(step).unwrap(), &object.world_line());
             let rest = surface.vertex_data.rest_positions().expect("asked for");
-            let bound = certificate.total;
+            let is_exact = object.name != "wall" && certificate.curvature == 0.0;
+            let bound = certificate.measured_gap() + certificate.rounding;
             for corners in surface.mesh.triangles() {
                 let weights = [0; 3].map(|_| random.between(0.0, 1.0));
                 let weights = weights.map(|weight| weight / weights.iter().sum::<f64>());
@@ -90,12 +95,11 @@ fn one_mesh_is_within_the_tolerance_at_every_step() {
                     points[0] * weights[0] + points[1] * weights[1] + points[2] * weights[2]
                 };
                 let drawn = mix(surface.mesh.positions());
-                let seen = |place: DVec3| view.seen_position(on_surface(&object.name, place));
                 let [a, b, c] = corners.map(|corner| rest[corner as usize]);
-                // On the flat object the certificate is about the very same point.
-                let error = match object.name.as_str() {
-                    "wall" => seen(mix(rest)).distance(drawn),
-                    _ => nearest_distance(seen, mix(rest), [b - a, c - a], drawn),
+                let seen = |place: DVec3| view.seen_position(on_surface(&object.name, place));
+                let error = match is_exact {
+                    true => nearest_distance(seen, mix(rest), [b - a, c - a], drawn),
+                    false => view.seen_position(mix(rest)).distance(drawn),
                 };
                 assert!(
                     error <= bound,
@@ -106,14 +110,14 @@ fn one_mesh_is_within_the_tolerance_at_every_step() {
             }
         }
         assert!(
-            largest > 0.3,
+            largest > 0.5,
             "{}: the bound is far from what happens: {largest}",
             object.name
         );
     }
 }
 
-/// About as many triangles as the step that needs most has on its own at least, and not many more than all steps together:
+/// As many triangles as the step that needs most has on its own at least, and not many more than all steps together:
 /// where the observer passes close by, each step needs them in another place.
 #[test]
 fn one_mesh_for_all_steps_is_no_finer_than_it_has_to_be() {
@@ -133,9 +137,8 @@ fn one_mesh_for_all_steps_is_no_finer_than_it_has_to_be() {
         let alone: Vec<usize> = (0..5).map(alone).collect();
         let (finest, all) = (alone.iter().max().unwrap(), alone.iter().sum::<usize>());
         let together = steps[0].mesh.triangles().len();
-        // A round object is triangulated anew for all steps, which may take a little less than for one of them alone.
         assert!(
-            10 * together >= 9 * finest && 10 * together <= 11 * all,
+            together >= *finest && 10 * together <= 11 * all,
             "{together} {alone:?}"
         );
     }
@@ -334,9 +337,7 @@ fn attributes_are_there_when_asked_for() {
     for names in attributes(&file) {
         assert_eq!(names, all.map(str::to_owned).into());
     }
-    // What vertices are given is looked at point by point, so that the scene needs other triangles with attributes.
-    let asks = SCENE.replacen('{', r#"{ "attributes": ["radiance"],"#, 1);
-    let placed = placed_scene(&asks);
+    let placed = placed();
     let mut meshes = file.json["meshes"].as_array().unwrap().iter();
     let marker = &meshes.next().unwrap()["primitives"][0]["attributes"];
     for name in ["_DOPPLER", "_RADIANCE"] {

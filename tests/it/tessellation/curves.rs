@@ -91,6 +91,8 @@ fn hard_sights_of_curved_shapes_keep_their_certificates() {
         DVec3::new(0.2, 0.1, 4.0),
         DVec3::new(0.05, 0.1, 0.2),
         DVec3::new(0.0, 0.3, 1.001),
+        // In a lid of the cylinder and of the rod.
+        DVec3::new(0.1, 1.0, 0.2),
     ];
     let velocities = [
         moving(0.0),

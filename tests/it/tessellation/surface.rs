@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use crate::common::Random;
 use crate::common::refining::{
-    Sighted, Sighting, Welded, distance_to_mesh, frozen, mesh, mix, model, plate, random_weights,
+    Sighted, Sighting, Welded, distance_to_mesh, frozen, mesh, mix, model, nearest_distance, plate,
+    random_weights,
 };
 use photosurface::scene::Measure;
 use photosurface::{DVec3, Mesh, Shape, Source, Tolerance, Velocity};
@@ -28,69 +29,69 @@ fn sheet(tilt: f64, h: f64) -> Mesh {
     mesh(&tilted, &[[0, 1, 2], [0, 2, 3], [3, 2, 4], [3, 4, 5]])
 }
 
-/// The distance of a place from the photosurface of flat triangles at rest, or somewhat more: by search, from many
-/// starts on each triangle and from `near`.
+/// The distance of a place from the photosurface of flat triangles at rest, or somewhat more: from the nearest of many
+/// places of each triangle on, and of `near`; and along each side.
 fn distance_to_photosurface(
     sighting: &Sighting,
     place: DVec3,
     rest: &[[DVec3; 3]],
     near: DVec3,
 ) -> f64 {
+    const GRID: i32 = 24;
+    const STARTS: usize = 4;
     let mut nearest = f64::INFINITY;
     for &corners in rest {
         let [a, b, c] = corners;
         let (u, v) = (b - a, c - a);
-        let at = |[s, t]: [f64; 2]| sighting.seen(a + u * s + v * t).distance(place);
         let inside = |[s, t]: [f64; 2]| {
             let (s, t) = (s.max(0.0), t.max(0.0));
             let over = (s + t).max(1.0);
-            [s / over, t / over]
+            a + u * (s / over) + v * (t / over)
         };
-        // Where `near` is, in the coordinates of the triangle.
         let (uu, uv, vv) = (u.dot(u), u.dot(v), v.dot(v));
-        let (of_u, of_v) = (u.dot(near - a), v.dot(near - a));
         let determinant = uu * vv - uv * uv;
-        let start = inside([
-            (vv * of_u - uv * of_v) / determinant,
-            (uu * of_v - uv * of_u) / determinant,
-        ]);
-        let mut starts = vec![start];
-        for i in 0..=6 {
-            for j in 0..=6 - i {
-                starts.push([f64::from(i) / 6.0, f64::from(j) / 6.0]);
-            }
+        // The place of the triangle that has the coordinates of a place, or next to it.
+        let onto = |at: DVec3| {
+            let (of_u, of_v) = (u.dot(at - a), v.dot(at - a));
+            inside([
+                (vv * of_u - uv * of_v) / determinant,
+                (uu * of_v - uv * of_u) / determinant,
+            ])
+        };
+        let of = |k: i32| f64::from(k) / f64::from(GRID);
+        let grid = (0..=GRID).flat_map(|i| (0..=GRID - i).map(move |j| [i, j]));
+        let distance = |at: &DVec3| sighting.seen(*at).distance(place);
+        let starts = grid.map(|[i, j]| inside([of(i), of(j)]));
+        let mut starts: Vec<(f64, DVec3)> = starts.map(|start| (distance(&start), start)).collect();
+        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        starts.truncate(STARTS);
+        starts.push((0.0, onto(near)));
+        for (_, start) in starts {
+            let seen = |at: DVec3| sighting.seen(onto(at));
+            nearest = nearest.min(nearest_distance(seen, start, [u, v], place));
         }
-        let best = starts.into_iter().map(|start| (at(start), start));
-        let best = best
-            .reduce(|a, b| if b.0 < a.0 { b } else { a })
-            .expect("starts");
-        for (mut least, mut here) in [best, (at(start), start)] {
-            let mut step = 0.2;
-            while step > 1e-9 {
-                let tries = [
-                    [1.0, 0.0],
-                    [-1.0, 0.0],
-                    [0.0, 1.0],
-                    [0.0, -1.0],
-                    [1.0, -1.0],
-                    [-1.0, 1.0],
-                    [1.0, 1.0],
-                    [-1.0, -1.0],
-                ];
-                let better = tries.into_iter().find_map(|[x, y]| {
-                    let there = inside([here[0] + step * x, here[1] + step * y]);
-                    let distance = at(there);
-                    (distance < least).then_some((distance, there))
-                });
-                match better {
-                    Some(better) => (least, here) = better,
-                    None => step *= 0.5,
-                }
-            }
-            nearest = nearest.min(least);
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            nearest = nearest.min(along(&|part| distance(&from.lerp(to, part))));
         }
     }
     nearest
+}
+
+/// The least value of a function between 0 and 1: from the least of some values on, by thirds.
+fn along(value: &dyn Fn(f64) -> f64) -> f64 {
+    const PARTS: i32 = 32;
+    let at = |k: i32| f64::from(k) / f64::from(PARTS);
+    let least = (0..=PARTS).min_by(|&a, &b| value(at(a)).total_cmp(&value(at(b))));
+    let least = least.expect("some parts");
+    let (mut low, mut high) = (at((least - 1).max(0)), at((least + 1).min(PARTS)));
+    for _ in 0..80 {
+        let [a, b] = [low + (high - low) / 3.0, high - (high - low) / 3.0];
+        match value(a) < value(b) {
+            true => high = b,
+            false => low = a,
+        }
+    }
+    value(0.5 * (low + high)).min(value(at(least)))
 }
 
 fn corners_of(mesh: &Mesh) -> Vec<[DVec3; 3]> {
@@ -108,7 +109,7 @@ fn assert_within(
     sighted: &Sighted,
     random: &mut Random,
 ) -> f64 {
-    const PLACES: usize = 60;
+    const PLACES: usize = 150;
     let certificate = &sighted.certificate;
     let room = certificate.rounding + sighting.return_error(sighted);
     let bound = certificate.surface_gap + room;
@@ -127,7 +128,7 @@ fn assert_within(
         };
         assert!(
             error <= bound * (1.0 + 1e-6),
-            "mesh to surface: {error:e} > {bound:e}, {direct:e} as points: {sighting:?} {certificate:?}"
+            "mesh to surface: {error:e} > {bound:e}, {direct:e} as points at {place} from {near}: {sighting:?} {certificate:?}"
         );
         largest = largest.max(error);
 
@@ -196,9 +197,20 @@ fn surfaces_are_within_their_bounds_both_ways() {
     let mut fewer = 0;
     let shapes = [
         ("plate", plate(0.4)),
+        ("sheet", sheet(0.3, 0.5)),
+        ("steep", sheet(1.2, 1.5)),
         ("box", frozen(Shape::cuboid([1.0, 2.0, 3.0]).unwrap(), 1)),
+        (
+            "lattice",
+            frozen(Shape::lattice([1, 1, 1], 1.0, 0.2).unwrap(), 1),
+        ),
     ];
-    let observers = [DVec3::new(0.1, 0.2, 0.05), DVec3::new(-3.0, 0.3, 2.0)];
+    let observers = [
+        DVec3::new(0.1, 0.2, 0.05),
+        DVec3::new(0.5, 0.1, 0.0),
+        DVec3::new(-3.0, 0.3, 2.0),
+        DVec3::new(0.0, 0.0, -0.4),
+    ];
     let directions = [
         DVec3::X,
         DVec3::NEG_Z,
@@ -208,14 +220,15 @@ fn surfaces_are_within_their_bounds_both_ways() {
     for (name, before) in &shapes {
         for observer in observers {
             for (number, direction) in directions.into_iter().enumerate() {
-                let gamma = [1.25, 3.0][(number + name.len()) % 2];
+                // Slow, fast, very fast.
+                let gamma = [1.25, 3.0, 10.0, 1e4][(number + name.len()) % 4];
                 let velocity = Velocity::from_gamma(gamma, direction).unwrap();
-                let tolerance = Tolerance::relative(5e-3).unwrap();
+                let tolerance = Tolerance::relative(2e-3).unwrap();
                 let sighting = Sighting::new(observer, velocity, tolerance);
                 let placed = |measure| {
                     let source = Source::Model(Arc::new(model(std::slice::from_ref(before))));
                     let placed = sighting.placed_in(measure, source);
-                    placed.within_budget(sighting.wanted, 10_000).0
+                    placed.within_budget(sighting.wanted, 60_000).0
                 };
                 let surface = sighting.sighted(&placed(Measure::Surface)).pop().unwrap();
                 let points = sighting.sighted(&placed(Measure::Points)).pop().unwrap();
@@ -247,7 +260,7 @@ fn surfaces_are_within_their_bounds_both_ways() {
             }
         }
     }
-    assert!(fewer > 0, "{fewer}");
+    assert!(fewer > 10, "{fewer}");
 }
 
 /// Parts of one object in the same plane, and beside each other at a crease, agree on every edge.
