@@ -66,27 +66,33 @@ impl Made {
     }
 }
 
+/// What is divided, for whom and how finely.
+#[derive(Clone, Copy)]
+pub(super) struct Wanted<'a> {
+    pub(super) meshes: &'a [&'a Mesh],
+    pub(super) found: &'a [Survey],
+    /// In the rest frame.
+    pub(super) observer: DVec3,
+    pub(super) allowance: &'a Allowance,
+    /// The observer's motion, for the measure of surfaces.
+    pub(super) motion: Option<&'a Motion>,
+    /// How many triangles may be made beyond those that there are.
+    pub(super) most_more: u64,
+}
+
 /// Divides all triangles for which the outline asks.
 ///
 /// What the measure of surfaces makes of few triangles depends on a triangle more here and there: it is compared with what
 /// that of points makes.
-pub(super) fn make(
-    meshes: &[&Mesh],
-    adjacency: &mut Adjacency,
-    found: &[Survey],
-    observer: DVec3,
-    (allowance, motion): (&Allowance, Option<&Motion>),
-    most_more: u64,
-) -> Made {
-    let measure = (allowance, motion);
-    let made = rounds(meshes, adjacency, found, observer, measure, most_more);
-    if motion.is_none() || made.count() > FEW {
+pub(super) fn make(wanted: Wanted<'_>, adjacency: &mut Adjacency) -> Made {
+    let made = rounds(wanted, adjacency);
+    if wanted.motion.is_none() || made.count() > FEW {
         return made;
     }
     let all: Vec<usize> = (0..adjacency.looked.len()).collect();
     adjacency.count_with_gaps(&all);
-    let plain = rounds(meshes, adjacency, found, observer, measure, most_more);
-    let allowed = allowance.between(&[DVec3::ZERO]);
+    let plain = rounds(wanted, adjacency);
+    let allowed = wanted.allowance.between(&[DVec3::ZERO]);
     let is_as_good = plain.bound() <= allowed.max(made.bound());
     let is_better = plain.count() < made.count() || made.bound() > allowed;
     match is_as_good && is_better {
@@ -99,14 +105,15 @@ pub(super) fn make(
 ///
 /// In that of surfaces the boundary of a triangle may turn out too coarse for a proof. Then the triangle counts with
 /// its gap, and all is decided anew; triangles for which that changes nothing keep their pieces.
-fn rounds(
-    meshes: &[&Mesh],
-    adjacency: &mut Adjacency,
-    found: &[Survey],
-    observer: DVec3,
-    (allowance, motion): (&Allowance, Option<&Motion>),
-    most_more: u64,
-) -> Made {
+fn rounds(wanted: Wanted<'_>, adjacency: &mut Adjacency) -> Made {
+    let Wanted {
+        meshes,
+        found,
+        observer,
+        allowance,
+        motion,
+        most_more,
+    } = wanted;
     let mut before = HashMap::new();
     let mut rounds = 0;
     if let Some(motion) = motion {

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::adjacency::Adjacency;
 use super::edge::{EDGE_SHARE, fewest_pieces, point_between, rim_gap_share};
 use super::edges::{Edges, LARGEST, Origin};
-use super::outcomes::{Made, Outcome, make};
+use super::outcomes::{Made, Outcome, Wanted, make};
 use super::outline::Need;
 use super::survey::{Survey, survey};
 use super::{Allowance, Motion, edge_gap, minimum_triangles};
@@ -63,14 +63,15 @@ pub(crate) fn refine(
     let mut adjacency = Adjacency::new(meshes, &found, observer, motion, small_edge);
     let off_plane = motion.map_or(0.0, |motion| motion.as_gap(adjacency.off_plane(meshes)));
     let sources = with_sides(meshes, &adjacency, observer, whole, motion);
-    let Made { outline, outcomes } = make(
+    let wanted = Wanted {
         meshes,
-        &mut adjacency,
-        &found,
+        found: &found,
         observer,
-        (allowance, motion),
+        allowance,
+        motion,
         most_more,
-    );
+    };
+    let Made { outline, outcomes } = make(wanted, &mut adjacency);
 
     let mut outcomes = outcomes.into_iter();
     let (looser, needs) = (outline.looser, outline.needs);
