@@ -152,7 +152,7 @@ impl CheckedObject {
                 Self {
                     name: object.name.clone(),
                     model: object.view_model(),
-                    measure: placed.measure(object),
+                    measure: placed.measure(object, parts),
                     parts: parts.len(),
                     vertices: meshes().map(|mesh| mesh.vertex_count()).sum(),
                     relative_gamma: relative.gamma(),

@@ -51,6 +51,10 @@ const MIN_DISTANCE_OF_GAP: f64 = 1e-6;
 /// refinement adds is not computed: even ten times as much would fit into [`ROOM`].
 const LITTLE_ROUNDING: f64 = 1e-4;
 
+/// The rounding to `f32`, as a fraction of the tolerance aimed at, up to which round shapes leave room for it in files of
+/// all formats, so that all hold the same mesh.
+const SHARED_ROUNDING: f64 = 1e-2;
+
 /// The tolerance of one object at one step, with all that decides how it is divided.
 pub(super) struct StepTolerance {
     pub(super) view: View,
@@ -208,6 +212,18 @@ impl StepTolerance {
         around: Option<(DVec3, DVec3)>,
         bulge: f64,
     ) -> f64 {
+        self.rounding_in(self.precision, mesh, seen, around, bulge)
+    }
+
+    /// The same bound for a file with these digits.
+    fn rounding_in(
+        &self,
+        precision: Precision,
+        mesh: &Mesh,
+        seen: &Extremes,
+        around: Option<(DVec3, DVec3)>,
+        bulge: f64,
+    ) -> f64 {
         let stretch = match self.view.elongation() {
             1.0 => {
                 let (center, radius) = ball(mesh);
@@ -216,7 +232,7 @@ impl StepTolerance {
             // A ball around something so long would reach to where it is not.
             _ => self.view.largest_stretch_at(mesh.positions()),
         };
-        let in_file = match (self.precision, around) {
+        let in_file = match (precision, around) {
             (Precision::Single, Some((low, high))) => Some(Singles {
                 extent: high - low + bulge,
                 roundings: if self.box_of_all_steps.is_some() {
@@ -288,7 +304,12 @@ impl StepTolerance {
     pub(super) fn allowed_of_curved(&self, mesh: &Mesh, seen: &Extremes) -> Allowed {
         // The box around the exact shape is a little larger.
         let around = self.box_of_all_steps.or_else(|| seen.bounds());
-        let rounding = 1.01 * self.rounding(mesh, seen, around, 0.0);
+        let rounding_in = |precision| 1.01 * self.rounding_in(precision, mesh, seen, around, 0.0);
+        let of_singles = rounding_in(Precision::Single);
+        let rounding = match of_singles <= SHARED_ROUNDING * self.aimed_length {
+            true => of_singles,
+            false => rounding_in(self.precision),
+        };
         match (self.aimed.unit(), self.aimed.number()) {
             (Unit::Degrees, degrees) => {
                 // (bound + rounding) / (distance - bound - rounding) <= s, solved for the bound.

@@ -292,7 +292,7 @@ impl PlacedScene {
         let objects = self.scene.objects().iter().zip(&self.objects);
         objects.map(move |(object, placed_object)| {
             let shown = self.model_view(object, step).expect(A_STEP);
-            let measure = self.measure(object);
+            let measure = self.measure(object, &placed_object.parts);
             let tolerance = (self.scene.tolerance(object), measure);
             Plan::of_facets(placed_object, shown, tolerance, wanted).unrefined()
         })
@@ -323,17 +323,32 @@ impl PlacedScene {
         })
     }
 
-    /// Which distance the tolerance of an object limits: what the scene says, else that of points. For flat facets,
-    /// tolerances that are angles limit the distance of points, whose bound holds for surfaces as well.
-    pub fn measure(&self, object: &Object) -> Measure {
-        let is_round = match &object.source {
-            Source::Shape(shape, _) => shape.is_curved(),
-            Source::File(_) | Source::Model(_) => false,
+    /// Which distance the tolerance of an object with these parts limits: what the scene says; else that of surfaces for a
+    /// shape on which nothing is drawn, in a scene without attributes of vertices and effects that colour them; else that
+    /// of points. Meshes of files are rarely coarse: as surfaces they hardly take fewer triangles, but several times as
+    /// long. For flat facets, tolerances that are angles limit the distance of points, whose bound holds for surfaces as
+    /// well.
+    pub fn measure(&self, object: &Object, parts: &[(String, Part)]) -> Measure {
+        let shape = match &object.source {
+            Source::Shape(shape, _) => Some(shape),
+            Source::File(_) | Source::Model(_) => None,
         };
+        let is_round = shape.is_some_and(Shape::is_curved);
         if !is_round && self.scene.tolerance(object).unit() == Unit::Degrees {
             return Measure::Points;
         }
-        object.measure.unwrap_or(Measure::Points)
+        let has_points = |part: &Part| {
+            let material = part.material.as_ref();
+            part.mesh().colors().is_some()
+                || material.is_some_and(|material| !material.textures().is_empty())
+        };
+        object.measure.unwrap_or_else(|| {
+            let of_scene = !self.scene.attributes().is_empty() || self.scene.effects().colors();
+            match shape.is_some() && !of_scene && !parts.iter().any(|(_, part)| has_points(part)) {
+                true => Measure::Surface,
+                false => Measure::Points,
+            }
+        })
     }
 
     /// The facts about the scene.
@@ -350,7 +365,7 @@ impl PlacedScene {
     ) -> Plan<'a> {
         let shown = self.model_view(object, step).expect(A_STEP);
         let tolerance = self.scene.tolerance(object);
-        let measure = self.measure(object);
+        let measure = self.measure(object, &placed_object.parts);
         Plan::new(
             placed_object,
             shown,

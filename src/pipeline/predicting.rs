@@ -69,7 +69,12 @@ pub(super) fn predict(mut plan: Plan<'_>, wanted: SurfaceOptions, weights: &[f64
     let motion = plan.tolerance.motion();
     let pieces = spread(facets.len(), looked_at).map(|index| {
         let (weight, offsets) = facets[index];
-        weight * each * predicted_pieces(offsets, &draft.limits.allowance, motion.as_ref())
+        let pieces = |motion| predicted_pieces(offsets, &draft.limits.allowance, motion);
+        // As surfaces, triangles count as points where that makes fewer.
+        let of_surfaces = motion
+            .as_ref()
+            .map_or(f64::INFINITY, |motion| pieces(Some(motion)));
+        weight * each * of_surfaces.min(pieces(None))
     });
     Predicted {
         // Added up in their order: the same sum for any number of threads.

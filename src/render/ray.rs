@@ -97,18 +97,34 @@ impl Slabs {
 
     /// The distance at which the ray enters the box, if it does.
     pub(super) fn enters(&self, low: DVec3, high: DVec3) -> Option<f64> {
-        let to_low = (low - self.origin_for_low) * self.inverse;
-        let to_high = (high - self.origin_for_high) * self.inverse;
-        // 0 * infinity, a ray within a face of the box, is NaN: both functions prefer the other number.
-        let span = |axis: usize| {
-            (
-                to_low[axis].min(to_high[axis]),
-                to_low[axis].max(to_high[axis]),
-            )
-        };
-        let ((near_x, far_x), (near_y, far_y), (near_z, far_z)) = (span(0), span(1), span(2));
-        let near = near_x.max(near_y).max(near_z).max(0.0);
-        let far = far_x.min(far_y).min(far_z) * FAR_MARGIN;
-        (near <= far).then_some(near)
+        let sides = [0, 1, 2].map(|axis| [[low[axis]], [high[axis]]]);
+        let [near] = self.enters_each(&sides);
+        (!near.is_nan()).then_some(near)
+    }
+
+    /// The distances at which the ray enters boxes whose lower and upper sides are given for each axis; NaN for those that
+    /// it does not enter.
+    #[inline(always)]
+    pub(super) fn enters_each<const N: usize>(&self, sides: &[[[f64; N]; 2]; 3]) -> [f64; N] {
+        let (mut near, mut far) = ([0.0; N], [f64::INFINITY; N]);
+        for axis in 0..3 {
+            let inverse = self.inverse[axis];
+            let origins = [self.origin_for_low[axis], self.origin_for_high[axis]];
+            let first = usize::from(inverse < 0.0);
+            let last = 1 - first;
+            let (firsts, lasts) = (&sides[axis][first], &sides[axis][last]);
+            for k in 0..N {
+                // 0 * infinity, a ray within a face of the box, is NaN, and no limit.
+                let enters = (firsts[k] - origins[first]) * inverse;
+                let leaves = (lasts[k] - origins[last]) * inverse;
+                near[k] = if enters > near[k] { enters } else { near[k] };
+                far[k] = if leaves < far[k] { leaves } else { far[k] };
+            }
+        }
+        for k in 0..N {
+            let is_entered = near[k] <= far[k] * FAR_MARGIN;
+            near[k] = if is_entered { near[k] } else { f64::NAN };
+        }
+        near
     }
 }

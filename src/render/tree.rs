@@ -3,8 +3,12 @@
 //! Of a tree that others keep, three things are asked here that `parry3d`'s does not have: it is at most
 //! [`MAX_LEVELS`] deep, whatever lies where; flat boxes are weighed by their area, not their volume, which is nothing; and
 //! bundles of slivers have slanted boxes ([`super::slant`]).
+//!
+//! A tree is built by divisions in two. Each of its nodes holds the boxes of two levels of that, which a ray is held against
+//! at once, where the processor has vector instructions (`pulp` detects them).
 
 use glam::DVec3;
+use pulp::{Arch, NullaryFnOnce};
 
 use super::bounds::Bounds;
 use super::ray::{Ray, Slabs};
@@ -21,6 +25,13 @@ const BINS: usize = 16;
 const BEST_LEVELS: usize = 48;
 pub(super) const MAX_LEVELS: usize = BEST_LEVELS + 32;
 
+/// So many boxes a node has: those of [`LEVELS`] levels of divisions.
+const LANES: usize = 4;
+const LEVELS: usize = LANES.ilog2() as usize;
+
+/// No more boxes than these wait to be looked into: those beside the one that is, on every level of nodes.
+const MAX_WAITING: usize = (LANES - 1) * MAX_LEVELS.div_ceil(LEVELS) + LANES;
+
 /// Boxes are larger by this part of all lengths that take part: a ray that the test of a triangle takes, roundings and all,
 /// must not be lost at a box.
 const MARGIN: f64 = 64.0 * f64::EPSILON;
@@ -34,20 +45,36 @@ const NONE: u32 = u32::MAX;
 
 /// Boxes within boxes, around things that have numbers.
 pub(super) struct Tree {
-    /// The first is around everything; there is none if there is nothing.
+    /// The first has the boxes around everything; there is none if there is nothing.
     nodes: Vec<Node>,
     slants: Vec<Slant>,
-    /// Numbers of things, those of a node beside each other.
+    /// Numbers of things, those of a box beside each other.
     things: Vec<u32>,
+    /// A box around everything.
+    whole: Bounds,
     middle: DVec3,
     /// From corner to corner.
     size: f64,
+    arch: Arch,
 }
 
+/// Boxes beside each other.
 struct Node {
+    /// How many there are.
+    boxes: usize,
+    /// For each axis the lower and the upper sides.
+    sides: [[[f64; LANES]; 2]; 3],
+    slants: [u32; LANES],
+    /// The first of a box's things, or the node of the boxes within it if it has no things.
+    firsts: [u32; LANES],
+    counts: [u32; LANES],
+}
+
+/// A box that is divided in two, or has things.
+struct Division {
     bounds: Bounds,
     slant: u32,
-    /// The first of its things, or of its two nodes if it has no things.
+    /// The first of its things, or of its two divisions if it has no things.
     first: u32,
     count: u32,
 }
@@ -80,20 +107,22 @@ impl Tree {
             nodes: Vec::new(),
             slants: Vec::new(),
             things: (0..bounds.len() as u32).collect(),
+            whole,
             middle: whole.middle(),
             size: (whole.high - whole.low).length(),
+            arch: Arch::new(),
         };
         if bounds.is_empty() {
             return tree;
         }
         let mut things = std::mem::take(&mut tree.things);
-        tree.nodes.push(Node::undivided());
+        let mut divisions = vec![Division::undivided()];
         let mut undivided = vec![(0, 0..things.len(), 0)];
-        while let Some((node, range, level)) = undivided.pop() {
+        while let Some((number, range, level)) = undivided.pop() {
             let own = &mut things[range.clone()];
             let around = Bounds::of_all(own.iter().map(|&thing| bounds[thing as usize]));
             let slant = slivers.and_then(|slivers| slivers.slant(own, tree.middle, &around));
-            let made = &mut tree.nodes[node];
+            let made = &mut divisions[number];
             made.bounds = around;
             if let Some(slant) = slant {
                 made.slant = tree.slants.len() as u32;
@@ -104,124 +133,212 @@ impl Tree {
                 continue;
             }
             let middle = range.start + divide(own, bounds, level);
-            let first = tree.nodes.len();
-            tree.nodes[node].first = first as u32;
-            tree.nodes.extend([Node::undivided(), Node::undivided()]);
+            let first = divisions.len();
+            divisions[number].first = first as u32;
+            divisions.extend([Division::undivided(), Division::undivided()]);
             undivided.push((first, range.start..middle, level + 1));
             undivided.push((first + 1, middle..range.end, level + 1));
         }
         tree.things = things;
+        tree.nodes = nodes(&divisions);
         tree
     }
 
     /// A box around everything, if there is something.
     pub(super) fn bounds(&self) -> Option<Bounds> {
-        self.nodes.first().map(|node| node.bounds)
+        (!self.nodes.is_empty()).then_some(self.whole)
     }
 
     /// Visits everything whose box a ray enters before `limit`, what is nearer mostly first; what `visit` gives is the limit
     /// from then on.
-    pub(super) fn along(&self, ray: &Ray, limit: f64, mut visit: impl FnMut(u32) -> f64) {
-        let reach = (ray.origin() - self.middle).length() + self.size;
-        let margin = reach * MARGIN;
-        let slabs = Slabs::new(ray.origin(), ray.direction(), margin);
-        let enters = |number: u32| {
-            #[cfg(test)]
-            counted::BOXES.set(counted::BOXES.get() + 1);
-            let node = &self.nodes[number as usize];
-            let near = slabs.enters(node.bounds.low, node.bounds.high)?;
-            match node.slant {
-                NONE => Some(near),
-                slant => {
-                    let slant = &self.slants[slant as usize];
-                    Some(near.max(slant.enters(ray, self.middle, margin)?))
-                }
-            }
-        };
-        let mut limit = limit;
-        // One for each level that is being looked into: never more than there are levels.
-        let mut waiting = [(0, 0.0); MAX_LEVELS + 1];
-        let mut count = 0;
-        let mut here = (!self.nodes.is_empty()).then_some(0);
-        here = here.filter(|&root| enters(root).is_some_and(|near| near <= limit));
-        loop {
-            let Some(number) = here else {
-                if count == 0 {
-                    return;
-                }
-                count -= 1;
-                let (number, near) = waiting[count];
-                here = (near <= limit * NEAR_MARGIN).then_some(number);
-                continue;
-            };
-            here = None;
-            let node = &self.nodes[number as usize];
-            for &thing in &self.things[node.own()] {
-                limit = visit(thing);
-            }
-            if node.count > 0 {
-                continue;
-            }
-            let open = |number| {
-                let near = enters(number)?;
-                (near <= limit * NEAR_MARGIN).then_some((number, near))
-            };
-            match (open(node.first), open(node.first + 1)) {
-                (Some(left), Some(right)) => {
-                    let (near, far) = if left.1 <= right.1 {
-                        (left, right)
-                    } else {
-                        (right, left)
-                    };
-                    here = Some(near.0);
-                    waiting[count] = far;
-                    count += 1;
-                }
-                (one, other) => here = one.or(other).map(|(number, _)| number),
-            }
+    pub(super) fn along(&self, ray: &Ray, limit: f64, visit: impl FnMut(u32) -> f64) {
+        if !self.nodes.is_empty() {
+            self.arch.dispatch(Along {
+                tree: self,
+                ray,
+                limit,
+                visit,
+            });
         }
     }
 
     /// Visits everything whose box holds `place`.
     pub(super) fn holding(&self, place: DVec3, mut visit: impl FnMut(u32)) {
-        let mut waiting = [0; MAX_LEVELS + 1];
+        let mut waiting = [0; MAX_WAITING];
         let mut count = usize::from(!self.nodes.is_empty());
         while count > 0 {
             count -= 1;
-            #[cfg(test)]
-            counted::BOXES.set(counted::BOXES.get() + 1);
             let node = &self.nodes[waiting[count] as usize];
-            if !node.bounds.holds(place) {
-                continue;
+            #[cfg(test)]
+            counted::add(node);
+            for lane in 0..node.boxes {
+                if !node.bounds(lane).holds(place) {
+                    continue;
+                }
+                match node.counts[lane] {
+                    0 => {
+                        waiting[count] = node.firsts[lane];
+                        count += 1;
+                    }
+                    _ => self.things_of(node, lane).for_each(&mut visit),
+                }
             }
-            self.things[node.own()]
-                .iter()
-                .for_each(|&thing| visit(thing));
-            if node.count == 0 {
-                // In place of the node itself: one more for each level.
-                waiting[count] = node.first;
-                waiting[count + 1] = node.first + 1;
-                count += 2;
+        }
+    }
+
+    /// The things of a box that has some.
+    fn things_of(&self, node: &Node, lane: usize) -> impl Iterator<Item = u32> {
+        let first = node.firsts[lane] as usize;
+        let things = &self.things[first..first + node.counts[lane] as usize];
+        things.iter().copied()
+    }
+}
+
+/// What a ray meets in a tree that is not empty.
+struct Along<'a, V> {
+    tree: &'a Tree,
+    ray: &'a Ray,
+    limit: f64,
+    visit: V,
+}
+
+impl<V: FnMut(u32) -> f64> NullaryFnOnce for Along<'_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self {
+            tree,
+            ray,
+            mut limit,
+            mut visit,
+        } = self;
+        let reach = (ray.origin() - tree.middle).length() + tree.size;
+        let margin = reach * MARGIN;
+        // Nothing is met by what is not a number.
+        if margin.is_nan() || ray.direction().is_nan() {
+            return;
+        }
+        let slabs = Slabs::new(ray.origin(), ray.direction(), margin);
+        // Numbers of boxes that are entered, and where.
+        let mut waiting = [(0, 0.0); MAX_WAITING];
+        let (mut number, mut count) = (0, 0);
+        loop {
+            let node = &tree.nodes[number];
+            #[cfg(test)]
+            counted::add(node);
+            let entered = slabs.enters_each(&node.sides);
+            let before = count;
+            for (lane, mut near) in entered.into_iter().enumerate().take(node.boxes) {
+                if !(near <= limit * NEAR_MARGIN) {
+                    continue;
+                }
+                if node.slants[lane] != NONE {
+                    let slant = &tree.slants[node.slants[lane] as usize];
+                    match slant.enters(ray, tree.middle, margin) {
+                        Some(slanted) => near = near.max(slanted),
+                        None => continue,
+                    }
+                }
+                // The nearest comes last.
+                let mut place = count;
+                while place > before && waiting[place - 1].1 < near {
+                    waiting[place] = waiting[place - 1];
+                    place -= 1;
+                }
+                waiting[place] = (LANES * number + lane, near);
+                count += 1;
             }
+            number = loop {
+                if count == 0 {
+                    return;
+                }
+                count -= 1;
+                let (own, near) = waiting[count];
+                if !(near <= limit * NEAR_MARGIN) {
+                    continue;
+                }
+                let (node, lane) = (&tree.nodes[own / LANES], own % LANES);
+                if node.counts[lane] == 0 {
+                    break node.firsts[lane] as usize;
+                }
+                for thing in tree.things_of(node, lane) {
+                    limit = visit(thing);
+                }
+            };
         }
     }
 }
 
+/// The nodes of all divisions.
+fn nodes(divisions: &[Division]) -> Vec<Node> {
+    let mut nodes = vec![Node::without_boxes()];
+    let mut left = vec![(0, 0)];
+    while let Some((number, division)) = left.pop() {
+        let mut own: Vec<usize> = vec![division];
+        for _ in 0..LEVELS {
+            let within = own.iter().flat_map(|&own| match divisions[own].count {
+                0 => {
+                    let first = divisions[own].first as usize;
+                    vec![first, first + 1]
+                }
+                _ => vec![own],
+            });
+            own = within.collect();
+        }
+        for own in own {
+            let division = &divisions[own];
+            let mut first = division.first;
+            if division.count == 0 {
+                first = nodes.len() as u32;
+                nodes.push(Node::without_boxes());
+                left.push((first as usize, own));
+            }
+            nodes[number].add(division, first);
+        }
+    }
+    nodes
+}
+
 impl Node {
+    fn without_boxes() -> Self {
+        Self {
+            boxes: 0,
+            sides: [[[f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]]; 3],
+            slants: [NONE; LANES],
+            firsts: [0; LANES],
+            counts: [0; LANES],
+        }
+    }
+
+    fn add(&mut self, division: &Division, first: u32) {
+        let lane = self.boxes;
+        self.boxes += 1;
+        for (axis, [low, high]) in self.sides.iter_mut().enumerate() {
+            low[lane] = division.bounds.low[axis];
+            high[lane] = division.bounds.high[axis];
+        }
+        self.slants[lane] = division.slant;
+        self.firsts[lane] = first;
+        self.counts[lane] = division.count;
+    }
+
+    fn bounds(&self, lane: usize) -> Bounds {
+        let side = |which: usize| DVec3::from_array(self.sides.map(|sides| sides[which][lane]));
+        Bounds {
+            low: side(0),
+            high: side(1),
+        }
+    }
+}
+
+impl Division {
     fn undivided() -> Self {
         Self {
             bounds: Bounds::NOTHING,
             slant: NONE,
             first: 0,
             count: 0,
-        }
-    }
-
-    /// Where its things are; none of a node that is divided.
-    fn own(&self) -> std::ops::Range<usize> {
-        match self.count {
-            0 => 0..0,
-            count => self.first as usize..(self.first + count) as usize,
         }
     }
 }
@@ -303,8 +420,15 @@ fn partition(things: &mut [u32], is_left: impl Fn(u32) -> bool) -> usize {
 pub(super) mod counted {
     use std::cell::Cell;
 
+    use super::Node;
+
     thread_local! {
         pub(in super::super) static BOXES: Cell<u64> = const { Cell::new(0) };
+    }
+
+    /// Counts the boxes of a node.
+    pub(super) fn add(node: &Node) {
+        BOXES.set(BOXES.get() + node.boxes as u64);
     }
 }
 
@@ -312,16 +436,15 @@ pub(super) mod counted {
 mod tests {
     use super::*;
 
+    /// How many levels of nodes there are.
     fn depth(tree: &Tree) -> usize {
         let mut deepest = 0;
         let mut waiting = vec![(0, 1)];
         while let Some((number, level)) = waiting.pop() {
             deepest = deepest.max(level);
             let node: &Node = &tree.nodes[number];
-            if node.count == 0 {
-                let first = node.first as usize;
-                waiting.extend([(first, level + 1), (first + 1, level + 1)]);
-            }
+            let within = (0..node.boxes).filter(|&lane| node.counts[lane] == 0);
+            waiting.extend(within.map(|lane| (node.firsts[lane] as usize, level + 1)));
         }
         deepest
     }
@@ -346,7 +469,8 @@ mod tests {
                 .map(|k| cube(DVec3::new(place(k), 0.0, 0.0), 0.1))
                 .collect();
             let tree = Tree::new(&all);
-            assert!(depth(&tree) <= MAX_LEVELS + 1, "{which}: {}", depth(&tree));
+            let most = MAX_LEVELS.div_ceil(LEVELS) + 1;
+            assert!(depth(&tree) <= most, "{which}: {}", depth(&tree));
             let mut things = tree.things.clone();
             things.sort_unstable();
             assert!(things.into_iter().eq(0..count as u32));
@@ -366,7 +490,7 @@ mod tests {
             });
             let tree = Tree::new(&all.collect::<Vec<_>>());
             let levels = depth(&tree) as u64;
-            assert!(levels < 25, "{levels}");
+            assert!(levels < 13, "{levels}");
             for k in 0..side * side {
                 let place = 3.0 * DVec3::new(f64::from(k % side), f64::from(k / side), 0.0);
                 counted::BOXES.set(0);
@@ -380,7 +504,7 @@ mod tests {
                     f64::MAX
                 });
                 assert!(met.contains(&(k as u32)) && met.len() <= FEW);
-                assert!(counted::BOXES.get() <= 6 * levels);
+                assert!(counted::BOXES.get() <= 12 * levels);
             }
         }
     }

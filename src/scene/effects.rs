@@ -79,6 +79,11 @@ impl Effects {
         *self != Self::default()
     }
 
+    /// Whether they give colours to the vertices of meshes.
+    pub(crate) fn colors(self) -> bool {
+        self.doppler != Doppler::None || self.searchlight
+    }
+
     /// As scenes write them.
     pub(crate) fn to_value(self) -> Value {
         let edge = |beyond| match beyond {

@@ -1,5 +1,7 @@
 //! A chart of a triangle in which flat and curved places with equal parameters lie opposite each other.
 
+use std::array::from_fn;
+
 use glam::{DVec2, DVec3};
 
 use super::chart::{Chart, Facet};
@@ -128,7 +130,7 @@ impl Bent {
         };
         let bent = Jet {
             place: jet.place,
-            first: first.map(|f| u * f.x + v * f.y),
+            first: from_fn(|k| u * first[k].x + v * first[k].y),
             second: [
                 of(first[0], first[0], second[0]),
                 of(first[0], first[1], second[1]),
@@ -168,7 +170,7 @@ impl Bent {
             three(f[0], f[1], f[1]) + two(s[2], f[0]) + 2.0 * two(s[1], f[1]),
             three(f[1], f[1], f[1]) + 3.0 * two(s[2], f[1]),
         ];
-        let turned = [0, 1].map(|k| {
+        let turned = from_fn(|k| {
             let by_chart = turns[0] * f[k].x + turns[1] * f[k].y;
             let by_bend = sizes[0] * change[k].x + sizes[1] * change[k].y;
             let by_second = of_second[k] * half.x + of_second[k + 1] * half.y;

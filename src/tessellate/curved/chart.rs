@@ -1,5 +1,7 @@
 //! Charts of the triangles of a round shape: the curved patch over a triangle, by two parameters.
 
+use std::array::from_fn;
+
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
@@ -155,14 +157,14 @@ impl Chart {
                 let r = y.length();
                 let out = y / r;
                 let along = axes.map(|axis| out.dot(axis));
-                let across = [0, 1].map(|k| axes[k] - out * along[k]);
+                let across: [DVec3; 2] = from_fn(|k| axes[k] - out * along[k]);
                 let second = |i: usize, j: usize| {
                     let turned = across[j] * along[i] + across[i] * along[j];
                     (turned + out * across[i].dot(across[j])) * (-radius / (r * r))
                 };
                 Jet {
                     place: out * radius,
-                    first: across.map(|across| across * (radius / r)),
+                    first: from_fn(|k| across[k] * (radius / r)),
                     second: [second(0, 0), second(0, 1), second(1, 1)],
                 }
             }

@@ -1,5 +1,7 @@
 //! How far a triangle is from the photosurface, nearly: by places in the middle of its sides and of itself.
 
+use std::array::from_fn;
+
 use glam::DVec3;
 
 use super::chart::Facet;
@@ -24,7 +26,7 @@ impl Estimate {
     pub(super) fn max(self, other: Self) -> Self {
         Self {
             whole: self.whole.max(other.whole),
-            sides: [0, 1, 2].map(|k| self.sides[k].max(other.sides[k])),
+            sides: from_fn(|k| self.sides[k].max(other.sides[k])),
         }
     }
 
@@ -61,7 +63,7 @@ impl Estimate {
                 let normal = (seen[1] - seen[0])
                     .cross(seen[2] - seen[0])
                     .normalize_or_zero();
-                let heights = bulges.map(|bulge| normal.dot(bulge));
+                let heights: [f64; 3] = from_fn(|k| normal.dot(bulges[k]));
                 // Sides alone would make this of the centre.
                 let beyond = normal.dot(center - sum * (4.0 / 9.0)).abs();
                 whole = whole.max(match facet.has_tip() {
@@ -71,27 +73,27 @@ impl Estimate {
                         .fold(normal.dot(center).abs(), |a, b| a.max(b.abs())),
                     false => quadratic::largest([0.0; 3], heights) + beyond,
                 });
-                sides = [0, 1, 2].map(|k| sides[k].max(heights[k].abs()));
+                sides = from_fn(|k| sides[k].max(heights[k].abs()));
                 // Same weights are near enough where places do not slide farther than is allowed.
                 let slides = slides(seen, normal, bulges);
-                let slides =
-                    [0, 1, 2].map(|k| (slides[k] * allowed / MOST_SLIDE).min(bulges[k].length()));
+                let slides: [f64; 3] =
+                    from_fn(|k| (slides[k] * allowed / MOST_SLIDE).min(bulges[k].length()));
                 whole = slides.into_iter().fold(whole, f64::max);
                 let most = slides.into_iter().fold(0.0, f64::max);
-                let lengths = bulges.map(|bulge| bulge.length());
+                let lengths: [f64; 3] = from_fn(|k| bulges[k].length());
                 let longest = lengths.into_iter().fold(0.0, f64::max);
                 if longest > 0.0 {
-                    sides = [0, 1, 2].map(|k| sides[k].max(most * lengths[k] / longest));
+                    sides = from_fn(|k| sides[k].max(most * lengths[k] / longest));
                 }
             }
             About::Points => {
                 let axis = center.normalize_or_zero();
                 let along = quadratic::largest([0.0; 3], bulges.map(|bulge| axis.dot(bulge)));
-                let lengths = bulges.map(|bulge| bulge.length());
+                let lengths: [f64; 3] = from_fn(|k| bulges[k].length());
                 whole = lengths
                     .iter()
                     .fold(whole.max(center.length()).max(along), |a, b| a.max(*b));
-                sides = [0, 1, 2].map(|k| sides[k].max(lengths[k]));
+                sides = from_fn(|k| sides[k].max(lengths[k]));
             }
         }
         let number = |distance: f64| match distance.is_nan() {
@@ -108,6 +110,7 @@ impl Estimate {
 /// How far the middle of each side slides in the triangle's plane, in weights, summed over the three corners.
 fn slides(seen: [DVec3; 3], normal: DVec3, bulges: [DVec3; 3]) -> [f64; 3] {
     let area = (seen[1] - seen[0]).cross(seen[2] - seen[0]).length();
-    let gradients = [0, 1, 2].map(|k| normal.cross(seen[(k + 2) % 3] - seen[(k + 1) % 3]) / area);
+    let gradients: [DVec3; 3] =
+        from_fn(|k| normal.cross(seen[(k + 2) % 3] - seen[(k + 1) % 3]) / area);
     bulges.map(|bulge| gradients.iter().map(|g| g.dot(bulge).abs()).sum())
 }

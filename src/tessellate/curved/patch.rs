@@ -1,5 +1,7 @@
 //! Bounds of the second derivatives of the curved patch over a part of a triangle, as it is seen.
 
+use std::array::from_fn;
+
 use glam::{DVec2, DVec3};
 
 use super::bent::Bent;
@@ -65,13 +67,13 @@ impl Patch {
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let half = 0.5 * (high - low);
         let (jet, second, third, turns) = chart.look(0.5 * (low + high), half);
-        let first = jet.first.map(|first| sight.at_rest(first));
-        let turned = [0, 1].map(|k| {
+        let first: [DVec3; 2] = from_fn(|k| sight.at_rest(jet.first[k]));
+        let turned: [f64; 2] = from_fn(|k| {
             let by_second = second[k] * half.x + second[k + 1] * half.y;
             sight.scale * by_second.min(turns[k])
         });
-        let change = [0, 1, 2].map(|k| sight.scale * (third[k] * half.x + third[k + 1] * half.y));
-        let sizes = [0, 1].map(|k| first[k].length() + turned[k]);
+        let change = from_fn(|k| sight.scale * (third[k] * half.x + third[k + 1] * half.y));
+        let sizes: [f64; 2] = from_fn(|k| first[k].length() + turned[k]);
         let reach = sizes[0] * half.x + sizes[1] * half.y;
         let offset = sight.offset(jet.place);
         let r = offset.length();
@@ -82,12 +84,17 @@ impl Patch {
         } else {
             2.0
         };
-        let across = first.map(|first| first - toward * toward.dot(first));
-        let wide = across.map(|across| across.length());
-        let wide_change = [0, 1].map(|k| (turned[k] + sizes[k] * turn).min(sizes[k] + wide[k]));
-        let pairs = [(0, 0), (0, 1), (1, 1)];
-        let distance = pairs.map(|(i, j)| across[i].dot(across[j]) / r);
-        let distance_change = pairs.map(|(i, j)| {
+        let across: [DVec3; 2] = from_fn(|k| first[k] - toward * toward.dot(first[k]));
+        let wide: [f64; 2] = from_fn(|k| across[k].length());
+        let wide_change: [f64; 2] =
+            from_fn(|k| (turned[k] + sizes[k] * turn).min(sizes[k] + wide[k]));
+        const PAIRS: [(usize, usize); 3] = [(0, 0), (0, 1), (1, 1)];
+        let distance = from_fn(|k| {
+            let (i, j) = PAIRS[k];
+            across[i].dot(across[j]) / r
+        });
+        let distance_change = from_fn(|k| {
+            let (i, j) = PAIRS[k];
             let product = wide[i] * wide_change[j]
                 + wide[j] * wide_change[i]
                 + wide_change[i] * wide_change[j];
@@ -99,7 +106,7 @@ impl Patch {
             toward,
             first,
             turned,
-            second: jet.second.map(|second| sight.at_rest(second)),
+            second: from_fn(|k| sight.at_rest(jet.second[k])),
             change,
             turn,
             distance,
@@ -114,8 +121,8 @@ impl Patch {
         let factor = sight.gamma_beta * along;
         let m_change = factor.abs() * self.turn;
         let m_size = m.length() + m_change;
-        let second = [0, 1, 2].map(|k| m.dot(self.second[k]) + factor * self.distance[k]);
-        let second_change = [0, 1, 2].map(|k| {
+        let second: [f64; 3] = from_fn(|k| m.dot(self.second[k]) + factor * self.distance[k]);
+        let second_change: [f64; 3] = from_fn(|k| {
             m_size * self.change[k]
                 + m_change * self.second[k].length()
                 + if factor == 0.0 {
@@ -124,7 +131,7 @@ impl Patch {
                     factor.abs() * self.distance_change[k]
                 }
         });
-        let first_change = [0, 1].map(|k| {
+        let first_change = from_fn(|k| {
             let of = |k: usize| second[k].abs() + second_change[k];
             let by_second = of(k) * self.half.x + of(k + 1) * self.half.y;
             let by_turn = m_size * self.turned[k] + m_change * self.first[k].length();
@@ -138,7 +145,7 @@ impl Patch {
         Bend {
             second,
             second_change,
-            first: self.first.map(|first| m.dot(first)),
+            first: from_fn(|k| m.dot(self.first[k])),
             first_change,
             apart: 2.0 * steepest * self.reach,
         }
@@ -161,19 +168,19 @@ impl Patch {
     }
 
     fn bent(&self, bend: &Bend) -> f64 {
-        self.over_box([0, 1, 2].map(|k| bend.second[k].abs() + bend.second_change[k]))
+        self.over_box(from_fn(|k| bend.second[k].abs() + bend.second_change[k]))
     }
 
     /// An upper bound on the largest `|g.error|` of a part with these corners: the largest one that the second derivatives
     /// in the middle give, and what their change adds.
     pub(super) fn largest(&self, bend: &Bend, g: DVec3, part: &[Corner; 3]) -> f64 {
-        let at_corners = part.map(|corner| g.dot(corner.error));
+        let at_corners: [f64; 3] = from_fn(|k| g.dot(part[k].error));
         let most = at_corners
             .iter()
             .fold(0.0, |most: f64, at| most.max(at.abs()));
         let plain = most + self.bulge(bend);
         let [xx, xy, yy] = bend.second;
-        let bulges = [0, 1, 2].map(|k| {
+        let bulges: [f64; 3] = from_fn(|k| {
             let side = part[(k + 2) % 3].at - part[(k + 1) % 3].at;
             -(xx * side.x * side.x + 2.0 * xy * side.x * side.y + yy * side.y * side.y) / 8.0
         });

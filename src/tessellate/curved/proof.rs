@@ -25,6 +25,8 @@
 //! Where neighbours are compared in these two ways, the places that belong to one place of their common edge differ: both
 //! are within its bound, and so is the way between them along the surface, but for its bend, which [`MIXED`] has room for.
 
+use std::array::from_fn;
+
 use glam::{DVec2, DVec3};
 
 use super::bent::{Arc, Bent};
@@ -81,6 +83,54 @@ struct Conditions {
     wide: f64,
 }
 
+/// Where the conditions are met in a part.
+enum Met {
+    Everywhere,
+    Nowhere,
+    Unknown,
+}
+
+impl Conditions {
+    /// Where a part with this patch and these bends, of its height and of the weights, keeps to the conditions.
+    fn met(&self, part: &[Corner; 3], patch: &Patch, height: &Bend, weights: &[Bend; 3]) -> Met {
+        // In its plane the flat triangle has the gradients of the weights themselves.
+        const OWN: [[f64; 2]; 3] = [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]];
+        const SIDES: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]];
+        // The largest shift and slope along any side: those of the middle, and with what the box adds.
+        let (mut shift, mut slope) = ([0.0f64; 2], [0.0f64; 2]);
+        for [x, y] in SIDES {
+            let of = |bend: &Bend, own: [f64; 2]| {
+                let middle = ((bend.first[0] - own[0]) * x + (bend.first[1] - own[1]) * y).abs();
+                [
+                    middle,
+                    middle + bend.first_change[0] * x.abs() + bend.first_change[1] * y.abs(),
+                ]
+            };
+            let shifts: [[f64; 2]; 3] = from_fn(|k| of(&weights[k], OWN[k]));
+            let slopes = of(height, [0.0; 2]);
+            for k in 0..2 {
+                shift[k] = shift[k].max(shifts.iter().map(|s| s[k]).sum());
+                slope[k] = slope[k].max(slopes[k]);
+            }
+        }
+        let steepest = SLOPE_ROOM * (1.0 - 0.5 * MOST_SHIFT) * self.cosine;
+        let fits = |k: usize| shift[k] <= MOST_SHIFT && self.lean * slope[k] <= steepest;
+        let moved = |k: usize| {
+            let at_corners = part
+                .iter()
+                .map(|corner| self.gradients[k].dot(corner.error).abs());
+            at_corners.fold(0.0, f64::max) + self.lines[k]
+        };
+        if fits(1) && (0..3).all(|k| moved(k) + patch.bulge(&weights[k]) <= self.wide) {
+            return Met::Everywhere;
+        }
+        match fits(0) && (0..3).all(|k| moved(k) <= self.wide) {
+            true => Met::Unknown,
+            false => Met::Nowhere,
+        }
+    }
+}
+
 impl<'a> Proof<'a> {
     /// The triangle with these seen corners; `rims` tells how the sides opposite each corner follow the arcs of rims.
     pub(super) fn new(
@@ -104,15 +154,16 @@ impl<'a> Proof<'a> {
         }
     }
 
-    /// An upper bound on the distance of places with the same weights; where it is above `limit`, any bound.
+    /// An upper bound on the distance of places with the same weights; where there is none within `limit`, any number above
+    /// it.
     pub(super) fn of_points(&mut self, limit: f64) -> f64 {
         let part = WHOLE.map(|at| self.corner(at));
         let axes = self.axes();
         self.over(part, &axes, limit, HALVINGS)
     }
 
-    /// An upper bound on the distance of the triangle and the patch as surfaces; where it is above `limit`, any bound.
-    /// `normals` are those of the photosurface at the corners; that of a tip is any other one.
+    /// An upper bound on the distance of the triangle and the patch as surfaces; where there is none within `limit`, any
+    /// number above it. `normals` are those of the photosurface at the corners; that of a tip is any other one.
     pub(super) fn of_surface(&mut self, normals: [DVec3; 3], limit: f64) -> f64 {
         let along_normals = self.along_normals(normals, limit);
         if along_normals <= limit {
@@ -121,8 +172,8 @@ impl<'a> Proof<'a> {
         along_normals.min(self.of_any_chart(limit))
     }
 
-    /// An upper bound on the distance of places with the same weights, in the chart that is better for it; where it is above
-    /// `limit`, any bound.
+    /// An upper bound on the distance of places with the same weights, in the chart that is better for it; where there is none
+    /// within `limit`, any number above it.
     pub(super) fn of_any_chart(&mut self, limit: f64) -> f64 {
         self.looks = 0;
         let bent = self.of_points(limit / MIXED) * MIXED;
@@ -196,9 +247,9 @@ impl<'a> Proof<'a> {
         let guess = near
             .iter()
             .map(shift)
-            .fold([0.0; 3], |a, b| [0, 1, 2].map(|k| f64::max(a[k], b[k])));
+            .fold([0.0; 3], |a, b| from_fn(|k| f64::max(a[k], b[k])));
         let guess = (0..3).map(|k| guess[k] + lines[k]).fold(0.0, f64::max);
-        let wide = 1.5 * guess + 0.01;
+        let wide = 2.0 * guess + 0.02;
         if !(wide < WIDEST) {
             return f64::INFINITY;
         }
@@ -211,62 +262,59 @@ impl<'a> Proof<'a> {
             wide,
         };
         let part = widened(wide).map(|at| self.corner(at));
-        if !self.is_graph(part, &conditions, CONDITION_HALVINGS) {
-            return f64::INFINITY;
-        }
-        self.over(part, &[normal], limit * cosine, HALVINGS) / cosine
+        let height = self.height(part, &conditions, limit * cosine, HALVINGS, false);
+        height.map_or(f64::INFINITY, |height| height / cosine)
     }
 
-    /// Whether a part keeps to the conditions.
-    fn is_graph(&mut self, part: [Corner; 3], conditions: &Conditions, halvings: u32) -> bool {
-        let Conditions {
-            gradients,
-            normal,
-            cosine,
-            lines,
-            lean,
-            wide,
-        } = conditions;
+    /// An upper bound on the height of the patch over a part; where there is none within `limit`, any number above it. `None`
+    /// if the part does not keep to the conditions; `is_graph` says that it is known to keep to them.
+    fn height(
+        &mut self,
+        part: [Corner; 3],
+        conditions: &Conditions,
+        limit: f64,
+        halvings: u32,
+        is_graph: bool,
+    ) -> Option<f64> {
+        let normal = conditions.normal;
+        let at_corners = part.iter().map(|corner| normal.dot(corner.error).abs());
+        let at_corners = at_corners.fold(0.0, f64::max);
+        if at_corners > limit {
+            return Some(at_corners);
+        }
         let patch = Patch::new(&self.chart, self.sight, &part);
-        let height = patch.bend(self.sight, *normal);
-        let weights = gradients.map(|g| patch.bend(self.sight, g));
-        // In its plane the flat triangle has the gradients of the weights themselves.
-        const OWN: [[f64; 2]; 3] = [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]];
-        const SIDES: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]];
-        // The largest shift and slope along any side: those of the middle, and with what the box adds.
-        let (mut shift, mut slope) = ([0.0f64; 2], [0.0f64; 2]);
-        for [x, y] in SIDES {
-            let of = |bend: &Bend, own: [f64; 2]| {
-                let middle = ((bend.first[0] - own[0]) * x + (bend.first[1] - own[1]) * y).abs();
-                [
-                    middle,
-                    middle + bend.first_change[0] * x.abs() + bend.first_change[1] * y.abs(),
-                ]
-            };
-            let shifts = [0, 1, 2].map(|k| of(&weights[k], OWN[k]));
-            let slopes = of(&height, [0.0; 2]);
-            for k in 0..2 {
-                shift[k] = shift[k].max(shifts.iter().map(|s| s[k]).sum());
-                slope[k] = slope[k].max(slopes[k]);
+        let height = patch.bend(self.sight, normal);
+        let mut met = Met::Everywhere;
+        let mut halves = None;
+        if !is_graph {
+            let weights: [Bend; 3] = from_fn(|k| patch.bend(self.sight, conditions.gradients[k]));
+            met = conditions.met(&part, &patch, &height, &weights);
+            if let Met::Unknown = met {
+                halves = Some(self.halves(&part, &patch, &weights));
             }
         }
-        let steepest = SLOPE_ROOM * (1.0 - 0.5 * MOST_SHIFT) * cosine;
-        let fits = |k: usize| shift[k] <= MOST_SHIFT && lean * slope[k] <= steepest;
-        let moved = |k: usize| {
-            let at_corners = part
-                .iter()
-                .map(|corner| gradients[k].dot(corner.error).abs());
-            at_corners.fold(0.0, f64::max) + lines[k]
+        let is_last = halvings == 0 || self.looks > MOST_LOOKS;
+        let halves = match met {
+            Met::Nowhere => return None,
+            Met::Unknown if is_last || halvings + CONDITION_HALVINGS <= HALVINGS => return None,
+            Met::Unknown => halves?,
+            Met::Everywhere => {
+                let bound = patch.largest(&height, normal, &part).max(at_corners);
+                if bound <= limit || is_last {
+                    return Some(bound);
+                }
+                self.halves(&part, &patch, &[height])
+            }
         };
-        if fits(1) && (0..3).all(|k| moved(k) + patch.bulge(&weights[k]) <= *wide) {
-            return true;
+        let is_graph = matches!(met, Met::Everywhere);
+        let mut most: f64 = 0.0;
+        for half in halves {
+            most = most.max(self.height(half, conditions, limit, halvings - 1, is_graph)?);
+            if most > limit {
+                break;
+            }
         }
-        let hopeless = !fits(0) || (0..3).any(|k| moved(k) > *wide);
-        if hopeless || halvings == 0 || self.looks > MOST_LOOKS {
-            return false;
-        }
-        let [a, b] = self.halves(&part, &patch, &weights);
-        self.is_graph(a, conditions, halvings - 1) && self.is_graph(b, conditions, halvings - 1)
+        Some(most)
     }
 
     /// The halves of a part, whose longest side is divided: that which bends most, where that is known.
@@ -278,10 +326,9 @@ impl<'a> Proof<'a> {
                 .map(|bend| patch.along(bend, side))
                 .fold(0.0, f64::max)
         };
-        let mut sizes = [0, 1, 2].map(bent);
+        let mut sizes: [f64; 3] = from_fn(bent);
         if bends.iter().any(|bend| patch.is_vague(bend)) {
-            sizes =
-                [0, 1, 2].map(|k| (part[(k + 2) % 3].offset - part[(k + 1) % 3].offset).length());
+            sizes = from_fn(|k| (part[(k + 2) % 3].offset - part[(k + 1) % 3].offset).length());
         }
         let k = (0..3).fold(0, |best, k| if sizes[k] > sizes[best] { k } else { best });
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
@@ -291,38 +338,21 @@ impl<'a> Proof<'a> {
         [a, b]
     }
 
-    /// An upper bound on the largest size of the error's components along `axes` over a part; where it is above `limit`,
-    /// any bound.
-    fn over(&mut self, part: [Corner; 3], axes: &[DVec3], limit: f64, halvings: u32) -> f64 {
+    /// An upper bound on the largest error over a part, from its components along three `axes` at right angles; where there
+    /// is none within `limit`, any number above it.
+    fn over(&mut self, part: [Corner; 3], axes: &[DVec3; 3], limit: f64, halvings: u32) -> f64 {
+        let lengths = part.iter().map(|corner| corner.error.length());
+        let at_corners = lengths.fold(0.0, f64::max);
+        if at_corners > limit {
+            return at_corners;
+        }
         let patch = Patch::new(&self.chart, self.sight, &part);
-        let size = |error: DVec3| {
-            axes.iter()
-                .map(|axis| axis.dot(error).powi(2))
-                .sum::<f64>()
-                .sqrt()
-        };
-        let at_corners = part
-            .iter()
-            .map(|corner| size(corner.error))
-            .fold(0.0, f64::max);
-        let mut bends = Vec::with_capacity(axes.len());
-        bends.extend(axes.iter().map(|&axis| patch.bend(self.sight, axis)));
-        let bound = match (axes, &bends[..]) {
-            ([axis], [bend]) => patch.largest(bend, *axis, &part),
-            _ => {
-                let bulge = bends
-                    .iter()
-                    .map(|bend| patch.bulge(bend).powi(2))
-                    .sum::<f64>()
-                    .sqrt();
-                let each = axes
-                    .iter()
-                    .zip(&bends)
-                    .map(|(&axis, bend)| patch.largest(bend, axis, &part).powi(2));
-                (at_corners + bulge).min(each.sum::<f64>().sqrt())
-            }
-        };
-        if bound <= limit || at_corners > limit || halvings == 0 || self.looks > MOST_LOOKS {
+        let bends: [Bend; 3] = from_fn(|k| patch.bend(self.sight, axes[k]));
+        let length = |of: &dyn Fn(usize) -> f64| DVec3::from_array(from_fn(of)).length();
+        let bulge = length(&|k| patch.bulge(&bends[k]));
+        let each = length(&|k| patch.largest(&bends[k], axes[k], &part));
+        let bound = (at_corners + bulge).min(each);
+        if bound <= limit || halvings == 0 || self.looks > MOST_LOOKS {
             return bound.max(at_corners);
         }
         let [a, b] = self.halves(&part, &patch, &bends);

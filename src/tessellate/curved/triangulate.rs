@@ -11,7 +11,7 @@ use super::rims::divided_rims;
 use super::sight::About;
 use super::sight::Sight;
 use crate::mesh::Mesh;
-use crate::shape::{Body, LEAST_PARTS, Piece, Shape, Spot};
+use crate::shape::{Body, Piece, Shape, Spot};
 
 /// How often triangles that are not proven are divided.
 const REPAIRS: usize = 40;
@@ -58,20 +58,7 @@ pub(crate) fn triangulate(
             Err(count) => looser *= (count as f64 / most.max(1) as f64).max(LOOSER),
         }
     }
-    let rims: Vec<_> = (0..Body::rims(&pieces))
-        .map(|_| Body::even_rim(LEAST_PARTS))
-        .collect();
-    let net = Net::new(
-        &Body::new(&pieces, &rims),
-        Task {
-            pieces: &pieces,
-            sights,
-            about,
-        },
-    );
-    let bounds = proven(&net, &(0..net.triangles.len()).collect::<Vec<_>>());
-    let is_finite = bounds.values().flatten().all(|bound| bound.is_finite());
-    is_finite.then(|| assembled(shape, &net, bounds))
+    None
 }
 
 /// The net for a task, with its bounds, `None` if one of its triangles cannot be proven; the number of triangles where it

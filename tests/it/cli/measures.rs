@@ -22,16 +22,11 @@ fn two(shape: &str, scene: &str, object: &str) -> String {
 fn the_measure_is_that_of_flag_object_scene_or_default() {
     let workplace = Workplace::new();
     for (scene, object, flags, expected) in [
-        ("", "", "", ["points", "points"]),
+        ("", "", "", ["surface", "points"]),
         ("", "", "--measure points", ["points", "points"]),
         ("", "", "--measure surface", ["surface", "surface"]),
         ("", "", "--attributes doppler", ["points", "points"]),
-        (
-            "",
-            "",
-            "--measure surface --tolerance deg:0.1",
-            ["surface", "points"],
-        ),
+        ("", "", "--tolerance deg:0.1", ["surface", "points"]),
         (
             r#""effects": { "doppler": "ramp" },"#,
             "",
@@ -91,6 +86,24 @@ fn the_measure_is_that_of_flag_object_scene_or_default() {
         if !flags.is_empty() || expected != ["points", "points"] {
             assert_eq!(check["objects"][0]["measure"], expected[0], "{flags}");
         }
+    }
+}
+
+/// Flat shapes are surfaces like round ones, but not where the tolerance is an angle; meshes of files are points.
+#[test]
+fn the_default_is_that_of_what_is_shown() {
+    let workplace = Workplace::new();
+    workplace.write("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    workplace.write("plate.json", two(PLATE, "", ""));
+    for (input, flags, expected) in [
+        ("plate.json", "", "surface"),
+        ("plate.json", "--tolerance deg:0.1", "points"),
+        ("triangle.obj", "", "points"),
+        ("triangle.obj", "--measure surface", "surface"),
+    ] {
+        let run = workplace.run(&format!("check {input} --json {flags}"));
+        let check: Value = serde_json::from_slice(&run.success().stdout).expect("JSON");
+        assert_eq!(check["objects"][0]["measure"], expected, "{input} {flags}");
     }
 }
 

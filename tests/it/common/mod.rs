@@ -2,6 +2,7 @@
 
 pub(crate) mod alone;
 pub(crate) mod command;
+pub(crate) mod curve;
 pub(crate) mod glb;
 pub(crate) mod oracle;
 pub(crate) mod passing;

@@ -197,6 +197,44 @@ impl Sighting {
         }
         largest
     }
+
+    /// Checks the certificate of an exact surface at `samples` places of each triangle; `seen` tells where the place of the
+    /// true surface is seen that is next to one at rest.
+    ///
+    /// Returns the largest distance found.
+    #[track_caller]
+    pub(crate) fn assert_near_curve(
+        &self,
+        sighted: &Sighted,
+        samples: usize,
+        seen: impl Fn(DVec3) -> DVec3,
+        random: &mut Random,
+    ) -> f64 {
+        let Sighted {
+            certificate, rest, ..
+        } = sighted;
+        let room = certificate.total * (1.0 + 1e-9) + self.return_error(sighted);
+        let mut largest: f64 = 0.0;
+        for corners in sighted.seen.triangles() {
+            let at_rest = corners.map(|corner| rest[corner as usize]);
+            let flat = corners.map(|corner| sighted.seen.positions()[corner as usize]);
+            for _ in 0..samples {
+                let weights = random_weights(random);
+                let (rest, flat) = (mix(at_rest, weights), mix(flat, weights));
+                let mut distance = seen(rest).distance(flat);
+                if distance > room {
+                    let [a, b, c] = at_rest;
+                    distance = nearest_distance(&seen, rest, [b - a, c - a], flat);
+                }
+                assert!(
+                    distance <= room,
+                    "{self:?}: {distance:e} > {certificate:?} at {weights:?} of {at_rest:?}"
+                );
+                largest = largest.max(distance);
+            }
+        }
+        largest
+    }
 }
 
 impl Sighted {

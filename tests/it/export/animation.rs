@@ -121,25 +121,33 @@ fn assert_within_at_every_step(placed: &PlacedScene) {
 /// where the observer passes close by, each step needs them in another place.
 #[test]
 fn one_mesh_for_all_steps_is_no_finer_than_it_has_to_be() {
-    let placed = placed();
+    // Alone, flat objects are surfaces unless something else is asked for; as morphs they are points.
+    let placed = placed_scene(&SCENE.replacen('{', r#"{ "measure": "points","#, 1));
     for (index, steps) in morphing(&placed).iter().enumerate() {
+        let is_exact = |surface: &Photosurface| surface.facts.certificate.curvature == 0.0;
         let alone = |step| {
             let mut surfaces = placed
                 .photosurfaces(step, SurfaceOptions::default())
                 .unwrap();
-            surfaces
-                .nth(index)
-                .expect("one part an object")
-                .mesh
-                .triangles()
-                .len()
+            surfaces.nth(index).expect("one part an object")
         };
-        let alone: Vec<usize> = (0..5).map(alone).collect();
-        let (finest, all) = (alone.iter().max().unwrap(), alone.iter().sum::<usize>());
-        let together = steps[0].mesh.triangles().len();
+        let alone: Vec<Photosurface> = (0..5).map(alone).collect();
+        let counts: Vec<usize> = alone.iter().map(|one| one.facts.triangles).collect();
+        let together = &steps[0];
+        // Some steps of a round object may take facets, of which there are more; and all steps together it is triangulated
+        // anew, which may take a little less than one of them alone.
+        let alike = alone
+            .iter()
+            .filter(|one| is_exact(one) == is_exact(together));
+        let finest = alike.map(|one| one.facts.triangles).max().unwrap_or(0);
+        let least = match placed.scene().objects()[index].name.as_str() {
+            "wall" => finest,
+            _ => finest * 9 / 10,
+        };
+        let (together, all) = (together.facts.triangles, counts.iter().sum::<usize>());
         assert!(
-            together >= *finest && 10 * together <= 11 * all,
-            "{together} {alone:?}"
+            finest > 0 && together >= least && 10 * together <= 11 * all,
+            "{together} {counts:?}"
         );
     }
 }
@@ -337,7 +345,8 @@ fn attributes_are_there_when_asked_for() {
     for names in attributes(&file) {
         assert_eq!(names, all.map(str::to_owned).into());
     }
-    let placed = placed();
+    // Vertices with attributes are measured by points.
+    let placed = placed_scene(&SCENE.replacen('{', r#"{ "attributes": ["radiance"],"#, 1));
     let mut meshes = file.json["meshes"].as_array().unwrap().iter();
     let marker = &meshes.next().unwrap()["primitives"][0]["attributes"];
     for name in ["_DOPPLER", "_RADIANCE"] {

@@ -14,7 +14,8 @@ fn passing() -> Scene {
     let scene = json!({
         "observer": { "position": [0, 0.02, 30], "velocity": { "beta": 0.9 },
             "flight": [{ "proper_time": 20, "acceleration": [0, 0, -0.05] }] },
-        "objects": [{ "name": "plate", "shape": { "grid": { "size": 2, "cells": 1 } }, "tolerance": { "absolute": 1e-3 } }],
+        "objects": [{ "name": "plate", "shape": { "grid": { "size": 2, "cells": 1 } }, "tolerance": { "absolute": 1e-3 },
+            "measure": "points" }],
     });
     Scene::from_json(&scene.to_string()).expect("valid")
 }

@@ -1,9 +1,8 @@
 //! Certified subdivision of curved shapes, against closed forms of their surfaces.
 
 use crate::common::Random;
-use crate::common::refining::{
-    Sighted, Sighting, distance_to_mesh, mix, nearest_distance, random_weights,
-};
+use crate::common::curve::{on_curve, to_curve};
+use crate::common::refining::{Sighted, Sighting, distance_to_mesh, mix, random_weights};
 use photosurface::scene::Measure;
 use photosurface::shape::Appearance;
 use photosurface::tessellate::Precision;
@@ -35,24 +34,8 @@ fn assert_certified(sighting: &Sighting, shape: &Shape, sighted: &Sighted, rando
         assert!(distance <= room, "{shape:?}: {distance:e} {certificate:?}");
     }
     let per_triangle = 2000usize.div_ceil(sighted.triangle_count());
-    for corners in sighted.seen.triangles() {
-        for _ in 0..per_triangle {
-            let weights = random_weights(random);
-            let flat = mix(
-                corners.map(|c| sighted.seen.positions()[c as usize]),
-                weights,
-            );
-            let at_rest = corners.map(|c| sighted.rest[c as usize]);
-            let seen = |place: DVec3| sighting.seen(to_curve(shape, place));
-            let rest = mix(at_rest, weights);
-            let mut distance = seen(rest).distance(flat);
-            if distance > room {
-                let [a, b, c] = at_rest;
-                distance = nearest_distance(seen, rest, [b - a, c - a], flat);
-            }
-            assert!(distance <= room, "{shape:?}: {distance:e} {certificate:?}");
-        }
-    }
+    let seen = |place: DVec3| sighting.seen(to_curve(shape, place));
+    sighting.assert_near_curve(sighted, per_triangle, seen, random);
 }
 
 /// The certificate of a curved shape is against the curve itself: from it to the mesh and back.
@@ -83,7 +66,54 @@ fn curved_shapes_are_certified_against_the_curve() {
     }
 }
 
-/// The same where the observer is fast, near, inside, or touches the shape, for surfaces and for points.
+/// As points, what is drawn on a sphere is where it is seen: each place of a triangle near that with the same texture
+/// coordinates.
+#[test]
+fn pictures_lie_on_spheres_where_they_are_seen() {
+    use std::f64::consts::{PI, TAU};
+    let place_of = |[u, v]: [f64; 2]| {
+        let ((sin_u, cos_u), (sin_v, cos_v)) = ((TAU * u).sin_cos(), (PI * v).sin_cos());
+        DVec3::new(-sin_v * sin_u, cos_v, -sin_v * cos_u)
+    };
+    let mut random = Random::new(10);
+    for (beta, observer) in [
+        (0.8, DVec3::new(0.3, 0.2, 4.0)),
+        (0.95, DVec3::new(0.3, 0.2, 1.5)),
+        (0.999, DVec3::new(0.1, 0.2, 0.3)),
+    ] {
+        let tolerance = Tolerance::relative(2e-3).unwrap();
+        let sighting = Sighting::new(observer, moving(beta), tolerance);
+        let source = Source::Shape(Shape::sphere(1.0).unwrap(), Appearance::default());
+        let sighted = &sighting.sighted(&sighting.placed_in(Measure::Points, source))[0];
+        let certificate = &sighted.certificate;
+        assert!(
+            certificate.complete && certificate.curvature == 0.0,
+            "{certificate:?}"
+        );
+        let textures = &sighted.seen.texture_coordinates()[0];
+        // The coordinates of the file are singles.
+        let room = certificate.total + 1e-6 * sighting.velocity.rapidity().exp();
+        let mut largest: f64 = 0.0;
+        for corners in sighted.seen.triangles() {
+            let corners = corners.map(|corner| corner as usize);
+            let at = corners.map(|corner| textures[corner].as_dvec2().extend(0.0));
+            for _ in 0..5 {
+                let weights = random_weights(&mut random);
+                let at = mix(at, weights);
+                let drawn = mix(corners.map(|c| sighted.seen.positions()[c]), weights);
+                let distance = sighting.seen(place_of([at.x, at.y])).distance(drawn);
+                assert!(distance <= room, "{beta}: {distance:e} {certificate:?}");
+                largest = largest.max(distance);
+            }
+        }
+        assert!(
+            largest > 0.7 * certificate.total,
+            "{beta}: {largest:e} {certificate:?}"
+        );
+    }
+}
+
+/// Certificates against the curve where the observer is fast, near, inside, or touches the shape, for surfaces and for points.
 #[test]
 fn hard_sights_of_curved_shapes_keep_their_certificates() {
     let mut random = Random::new(9);
@@ -111,72 +141,6 @@ fn hard_sights_of_curved_shapes_keep_their_certificates() {
                     assert_eq!(sighted.certificate.measure, measure);
                     assert_certified(&sighting, &shape, sighted, &mut random);
                 }
-            }
-        }
-    }
-}
-
-/// The corners of the generating outline in the half plane of distance from and height along the axis.
-fn outline(shape: &Shape) -> &'static [[f64; 2]] {
-    match shape {
-        Shape::Cylinder(_) => &[[0.0, 1.0], [0.5, 1.0], [0.5, -1.0], [0.0, -1.0]],
-        Shape::Rod(_) => &[[0.0, 1.0], [0.5, 1.0], [0.5, -1.0], [0.0, -1.0]],
-        Shape::Cone(_) => &[[0.0, 0.75], [0.7, -0.75], [0.0, -0.75]],
-        _ => unreachable!("round"),
-    }
-}
-
-fn turned([radius, height]: [f64; 2], direction: DVec3) -> DVec3 {
-    let aside = DVec3::new(direction.x, 0.0, direction.z).normalize();
-    aside * radius + DVec3::Y * height
-}
-
-fn on_curve(shape: &Shape, random: &mut Random) -> DVec3 {
-    let direction = random.direction();
-    match shape {
-        Shape::Sphere(_) => direction,
-        Shape::Torus(_) => {
-            let angle = random.between(0.0, std::f64::consts::TAU);
-            turned([1.0 + 0.3 * angle.cos(), 0.3 * angle.sin()], direction)
-        }
-        _ => {
-            let corners = outline(shape);
-            let side = random.between(0.0, corners.len() as f64 - 1.0);
-            let (a, b) = (corners[side as usize], corners[side as usize + 1]);
-            turned(
-                [0, 1].map(|i| a[i] + (b[i] - a[i]) * side.fract()),
-                direction,
-            )
-        }
-    }
-}
-
-/// The place of the curved surface nearest to one near to it.
-fn to_curve(shape: &Shape, place: DVec3) -> DVec3 {
-    let radius = place.x.hypot(place.z);
-    match shape {
-        Shape::Sphere(_) => place.normalize(),
-        Shape::Torus(_) => {
-            let middle = turned([1.0, 0.0], place);
-            middle + (place - middle).normalize() * 0.3
-        }
-        _ => {
-            let to_side = |ends: &[[f64; 2]]| {
-                let [a, b] = [
-                    DVec3::new(ends[0][0], ends[0][1], 0.0),
-                    DVec3::new(ends[1][0], ends[1][1], 0.0),
-                ];
-                let here = DVec3::new(radius, place.y, 0.0);
-                let part = (here - a).dot(b - a) / (b - a).length_squared();
-                let on = a + (b - a) * part.clamp(0.0, 1.0);
-                (here.distance(on), [on.x, on.y])
-            };
-            let sides = outline(shape).windows(2).map(to_side);
-            let nearest = sides.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap().1;
-            if radius == 0.0 {
-                place
-            } else {
-                turned(nearest, place)
             }
         }
     }
