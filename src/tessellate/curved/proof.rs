@@ -57,7 +57,7 @@ const MIXED: f64 = 1.002;
 /// How often a part is halved, and how many places of a triangle are looked at.
 const HALVINGS: u32 = 40;
 const CONDITION_HALVINGS: u32 = 8;
-const MOST_LOOKS: u32 = 600;
+const MOST_LOOKS: u32 = 300;
 
 /// A triangle of which something is proven.
 pub(super) struct Proof<'a> {
@@ -249,7 +249,7 @@ impl<'a> Proof<'a> {
             .map(shift)
             .fold([0.0; 3], |a, b| from_fn(|k| f64::max(a[k], b[k])));
         let guess = (0..3).map(|k| guess[k] + lines[k]).fold(0.0, f64::max);
-        let wide = 2.0 * guess + 0.02;
+        let wide = 1.5 * guess + 0.02;
         if !(wide < WIDEST) {
             return f64::INFINITY;
         }

@@ -16,9 +16,13 @@ use crate::shape::{Body, Piece, Shape, Spot};
 /// How often triangles that are not proven are divided.
 const REPAIRS: usize = 40;
 
-/// How many times as many triangles as before there may be after each of refinement and repairs, and a few that do not count.
+/// How many times as many triangles as before there may be after each of refinement and repairs, and a few that do not count;
+/// and how many proofs for each triangle.
 const MOST_TIMES: usize = 3;
 const FEW: usize = 1_000;
+
+/// A few proofs that do not count: a triangle that cannot be proven takes a hundred times as long as others.
+const FEW_PROOFS: usize = 200;
 
 /// If there are more triangles than there may be, the tolerance is multiplied by a factor, at least by this one, and so often
 /// at most.
@@ -92,7 +96,12 @@ fn repaired(net: &mut Net<'_>, most: usize) -> Option<BoundsOf> {
     let mut bounds = BoundsOf::new();
     let mut open: Vec<usize> = (0..net.triangles.len()).filter(|&t| net.alive[t]).collect();
     let most = most.min(MOST_TIMES * open.len() + FEW);
+    let mut proofs = MOST_TIMES * open.len() + FEW_PROOFS;
     for _ in 0..=REPAIRS {
+        if open.len() > proofs {
+            break;
+        }
+        proofs -= open.len();
         let found = proven(net, &open);
         let failed = open.iter().copied();
         let failed: Vec<usize> = failed

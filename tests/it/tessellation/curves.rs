@@ -76,20 +76,27 @@ fn pictures_lie_on_spheres_where_they_are_seen() {
         DVec3::new(-sin_v * sin_u, cos_v, -sin_v * cos_u)
     };
     let mut random = Random::new(10);
+    let ahead = DVec3::new(0.3, -0.2, -1.0).normalize();
+    let mut exact = 0;
     for (beta, observer) in [
-        (0.8, DVec3::new(0.3, 0.2, 4.0)),
-        (0.95, DVec3::new(0.3, 0.2, 1.5)),
-        (0.999, DVec3::new(0.1, 0.2, 0.3)),
+        (0.9, ahead * 2.0),
+        (0.9, ahead * -2.0),
+        (0.95, ahead * -4.0),
+        (0.99, ahead * 1.5),
+        (0.99, ahead * -1.5),
+        (0.999, ahead * -3.0),
+        (0.99, DVec3::new(0.1, 0.2, 0.3)),
     ] {
         let tolerance = Tolerance::relative(2e-3).unwrap();
         let sighting = Sighting::new(observer, moving(beta), tolerance);
         let source = Source::Shape(Shape::sphere(1.0).unwrap(), Appearance::default());
         let sighted = &sighting.sighted(&sighting.placed_in(Measure::Points, source))[0];
         let certificate = &sighted.certificate;
-        assert!(
-            certificate.complete && certificate.curvature == 0.0,
-            "{certificate:?}"
-        );
+        assert!(certificate.complete, "{certificate:?}");
+        if certificate.curvature > 0.0 {
+            continue;
+        }
+        exact += 1;
         let textures = &sighted.seen.texture_coordinates()[0];
         // The coordinates of the file are singles.
         let room = certificate.total + 1e-6 * sighting.velocity.rapidity().exp();
@@ -111,6 +118,7 @@ fn pictures_lie_on_spheres_where_they_are_seen() {
             "{beta}: {largest:e} {certificate:?}"
         );
     }
+    assert!(exact >= 4, "most take facets: {exact}");
 }
 
 /// Certificates against the curve where the observer is fast, near, inside, or touches the shape, for surfaces and for points.
