@@ -27,7 +27,7 @@ pub(super) struct AccuracyArgs {
     tolerance: Option<Tolerance>,
     /// Which distance the tolerance limits: points, between where each point is drawn and where it is seen; or surface,
     /// between the mesh and the photosurface as surfaces, which takes fewer triangles and is enough for shape alone
-    /// [default: surface for shapes without checker, attributes and effects of colour, else points]
+    /// [default: surface for round shapes without checker, attributes and effects of colour, else points]
     #[arg(long, value_name = "points|surface")]
     measure: Option<Measure>,
     /// Add no vertices; the certificate still bounds the distance from the true photosurface. A round shape without a

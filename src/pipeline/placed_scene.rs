@@ -324,16 +324,15 @@ impl PlacedScene {
     }
 
     /// Which distance the tolerance of an object with these parts limits: what the scene says; else that of surfaces for a
-    /// shape on which nothing is drawn, in a scene without attributes of vertices and effects that colour them; else that
-    /// of points. Meshes of files are rarely coarse: as surfaces they hardly take fewer triangles, but several times as
-    /// long. For flat facets, tolerances that are angles limit the distance of points, whose bound holds for surfaces as
-    /// well.
+    /// round shape on which nothing is drawn, in a scene without attributes of vertices and effects that colour them; else
+    /// that of points. Near the observer flat facets take hardly fewer triangles as surfaces, but several times as long, and
+    /// how many is hard to predict. For them tolerances that are angles limit the distance of points, whose bound holds for
+    /// surfaces as well.
     pub fn measure(&self, object: &Object, parts: &[(String, Part)]) -> Measure {
-        let shape = match &object.source {
-            Source::Shape(shape, _) => Some(shape),
-            Source::File(_) | Source::Model(_) => None,
+        let is_round = match &object.source {
+            Source::Shape(shape, _) => shape.is_curved(),
+            Source::File(_) | Source::Model(_) => false,
         };
-        let is_round = shape.is_some_and(Shape::is_curved);
         if !is_round && self.scene.tolerance(object).unit() == Unit::Degrees {
             return Measure::Points;
         }
@@ -344,7 +343,7 @@ impl PlacedScene {
         };
         object.measure.unwrap_or_else(|| {
             let of_scene = !self.scene.attributes().is_empty() || self.scene.effects().colors();
-            match shape.is_some() && !of_scene && !parts.iter().any(|(_, part)| has_points(part)) {
+            match is_round && !of_scene && !parts.iter().any(|(_, part)| has_points(part)) {
                 true => Measure::Surface,
                 false => Measure::Points,
             }

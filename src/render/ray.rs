@@ -107,12 +107,12 @@ impl Slabs {
     #[inline(always)]
     pub(super) fn enters_each<const N: usize>(&self, sides: &[[[f64; N]; 2]; 3]) -> [f64; N] {
         let (mut near, mut far) = ([0.0; N], [f64::INFINITY; N]);
-        for axis in 0..3 {
+        for (axis, sides) in sides.iter().enumerate() {
             let inverse = self.inverse[axis];
             let origins = [self.origin_for_low[axis], self.origin_for_high[axis]];
             let first = usize::from(inverse < 0.0);
             let last = 1 - first;
-            let (firsts, lasts) = (&sides[axis][first], &sides[axis][last]);
+            let (firsts, lasts) = (&sides[first], &sides[last]);
             for k in 0..N {
                 // 0 * infinity, a ray within a face of the box, is NaN, and no limit.
                 let enters = (firsts[k] - origins[first]) * inverse;

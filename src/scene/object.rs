@@ -35,7 +35,7 @@ pub struct Object {
     pub velocity: Velocity,
     /// How far its photosurface may be from the true one, if not as far as the scene says.
     pub tolerance: Option<Tolerance>,
-    /// Which distance the tolerance limits; if absent, that of surfaces for shapes without checker in scenes without
+    /// Which distance the tolerance limits; if absent, that of surfaces for round shapes without checker in scenes without
     /// attributes and effects of colour, else that of points.
     pub measure: Option<Measure>,
     /// Which effects of special relativity its shape is shown with; if absent, those that the scene file says, or both.

@@ -89,15 +89,20 @@ fn the_measure_is_that_of_flag_object_scene_or_default() {
     }
 }
 
-/// Flat shapes are surfaces like round ones, but not where the tolerance is an angle; meshes of files are points.
+/// Flat shapes and meshes of files are measured by points, and never as surfaces where the tolerance is an angle.
 #[test]
 fn the_default_is_that_of_what_is_shown() {
     let workplace = Workplace::new();
     workplace.write("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     workplace.write("plate.json", two(PLATE, "", ""));
     for (input, flags, expected) in [
-        ("plate.json", "", "surface"),
-        ("plate.json", "--tolerance deg:0.1", "points"),
+        ("plate.json", "", "points"),
+        ("plate.json", "--measure surface", "surface"),
+        (
+            "plate.json",
+            "--measure surface --tolerance deg:0.1",
+            "points",
+        ),
         ("triangle.obj", "", "points"),
         ("triangle.obj", "--measure surface", "surface"),
     ] {

@@ -51,7 +51,7 @@ pub(crate) fn to_curve(shape: &Shape, place: DVec3) -> DVec3 {
             };
             let corners = outline(shape);
             let sides = corners.windows(2).map(to_side);
-            let nearest = sides.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap().1;
+            let nearest = sides.min_by(|a, b| a.0.total_cmp(&b.0)).expect("sides").1;
             if radius == 0.0 {
                 place
             } else {
