@@ -29,8 +29,16 @@ pub(crate) fn on_curve(shape: &Shape, random: &mut Random) -> DVec3 {
     }
 }
 
-/// The place of the true surface nearest to one near to it.
-pub(crate) fn to_curve(shape: &Shape, place: DVec3) -> DVec3 {
+/// How many smooth pieces the true surface has.
+pub(crate) fn pieces(shape: &Shape) -> usize {
+    match shape {
+        Shape::Sphere(_) | Shape::Torus(_) => 1,
+        _ => outline(shape).len() - 1,
+    }
+}
+
+/// The place of a piece of the true surface nearest to one near to it.
+pub(crate) fn to_piece(shape: &Shape, piece: usize, place: DVec3) -> DVec3 {
     let radius = place.x.hypot(place.z);
     match shape {
         Shape::Sphere(sphere) => place.normalize() * sphere.radius.get(),
@@ -39,23 +47,14 @@ pub(crate) fn to_curve(shape: &Shape, place: DVec3) -> DVec3 {
             middle + (place - middle).normalize() * torus.minor_radius().get()
         }
         _ => {
-            let to_side = |ends: &[[f64; 2]]| {
-                let [a, b] = [
-                    DVec3::new(ends[0][0], ends[0][1], 0.0),
-                    DVec3::new(ends[1][0], ends[1][1], 0.0),
-                ];
-                let here = DVec3::new(radius, place.y, 0.0);
-                let part = (here - a).dot(b - a) / (b - a).length_squared();
-                let on = a + (b - a) * part.clamp(0.0, 1.0);
-                (here.distance(on), [on.x, on.y])
-            };
             let corners = outline(shape);
-            let sides = corners.windows(2).map(to_side);
-            let nearest = sides.min_by(|a, b| a.0.total_cmp(&b.0)).expect("sides").1;
-            if radius == 0.0 {
-                place
-            } else {
-                turned(nearest, place)
+            let [a, b] = [piece, piece + 1].map(|k| DVec3::new(corners[k][0], corners[k][1], 0.0));
+            let here = DVec3::new(radius, place.y, 0.0);
+            let part = (here - a).dot(b - a) / (b - a).length_squared();
+            let on = a + (b - a) * part.clamp(0.0, 1.0);
+            match radius == 0.0 {
+                true => DVec3::Y * on.y,
+                false => turned([on.x, on.y], place),
             }
         }
     }

@@ -198,8 +198,8 @@ impl Sighting {
         largest
     }
 
-    /// Checks the certificate of an exact surface at `samples` places of each triangle; `seen` tells where the place of the
-    /// true surface is seen that is next to one at rest.
+    /// Checks the certificate of an exact surface at `samples` places of each triangle; `seen` tells where the place of one of
+    /// so many `pieces` of the true surface is seen that is next to one at rest.
     ///
     /// Returns the largest distance found.
     #[track_caller]
@@ -207,7 +207,8 @@ impl Sighting {
         &self,
         sighted: &Sighted,
         samples: usize,
-        seen: impl Fn(DVec3) -> DVec3,
+        pieces: usize,
+        seen: impl Fn(usize, DVec3) -> DVec3,
         random: &mut Random,
     ) -> f64 {
         let Sighted {
@@ -221,10 +222,15 @@ impl Sighting {
             for _ in 0..samples {
                 let weights = random_weights(random);
                 let (rest, flat) = (mix(at_rest, weights), mix(flat, weights));
-                let mut distance = seen(rest).distance(flat);
+                let to_each = (0..pieces).map(|piece| seen(piece, rest).distance(flat));
+                let mut distance = to_each.fold(f64::INFINITY, f64::min);
                 if distance > room {
                     let [a, b, c] = at_rest;
-                    distance = nearest_distance(&seen, rest, [b - a, c - a], flat);
+                    let to_each = (0..pieces).map(|piece| {
+                        let seen = |place| seen(piece, place);
+                        nearest_distance(seen, rest, [b - a, c - a], flat)
+                    });
+                    distance = to_each.fold(distance, f64::min);
                 }
                 assert!(
                     distance <= room,

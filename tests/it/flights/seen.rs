@@ -10,7 +10,7 @@ use photosurface::{
 };
 
 use super::exact::{Big, State, all_states, big, random_flight, small, states_until};
-use crate::common::curve::to_curve;
+use crate::common::curve::{pieces, to_piece};
 use crate::common::refining::{Sighted, Sighting};
 use crate::common::{Random, Worst};
 
@@ -244,11 +244,11 @@ fn certificates_hold_along_flights() {
                     {
                         let to_rest = object.model_to_rest();
                         let from_rest = to_rest.inverse();
-                        let seen = |place: DVec3| {
-                            let place = to_curve(shape, from_rest.transform_point3(place));
+                        let seen = |piece, place: DVec3| {
+                            let place = to_piece(shape, piece, from_rest.transform_point3(place));
                             sighting.seen(to_rest.transform_point3(place))
                         };
-                        sighting.assert_near_curve(&sighted, 2, seen, &mut random)
+                        sighting.assert_near_curve(&sighted, 2, pieces(shape), seen, &mut random)
                     }
                     _ => sighting.assert_contained(&sighted, 2, &mut random),
                 };
