@@ -93,16 +93,22 @@ fn check_certificate(certificate: &Certificate) {
     let Certificate {
         tolerance,
         gap,
+        surface_gap,
         curvature,
         rounding,
         total,
         complete,
         ..
     } = *certificate;
+    assert!(
+        surface_gap <= gap,
+        "{certificate:?}: places are never nearer than surfaces"
+    );
     if complete {
         assert!(total <= tolerance, "{certificate:?} is not complete");
+        let parts = [certificate.measured_gap(), curvature, rounding];
         assert!(
-            [gap, curvature, rounding].iter().all(|&part| part <= total),
+            parts.iter().all(|&part| part <= total),
             "{certificate:?} has a part larger than the sum"
         );
     }
