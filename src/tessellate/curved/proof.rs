@@ -284,37 +284,44 @@ impl<'a> Proof<'a> {
         }
         let patch = Patch::new(&self.chart, self.sight, &part);
         let height = patch.bend(self.sight, normal);
-        let mut met = Met::Everywhere;
-        let mut halves = None;
+        let is_last = halvings == 0 || self.looks > MOST_LOOKS;
         if !is_graph {
             let weights: [Bend; 3] = from_fn(|k| patch.bend(self.sight, conditions.gradients[k]));
-            met = conditions.met(&part, &patch, &height, &weights);
-            if let Met::Unknown = met {
-                halves = Some(self.halves(&part, &patch, &weights));
-            }
-        }
-        let is_last = halvings == 0 || self.looks > MOST_LOOKS;
-        let halves = match met {
-            Met::Nowhere => return None,
-            Met::Unknown if is_last || halvings + CONDITION_HALVINGS <= HALVINGS => return None,
-            Met::Unknown => halves?,
-            Met::Everywhere => {
-                let bound = patch.largest(&height, normal, &part).max(at_corners);
-                if bound <= limit || is_last {
-                    return Some(bound);
+            match conditions.met(&part, &patch, &height, &weights) {
+                Met::Everywhere => {}
+                Met::Nowhere => return None,
+                Met::Unknown if is_last || halvings + CONDITION_HALVINGS <= HALVINGS => {
+                    return None;
                 }
-                self.halves(&part, &patch, &[height])
-            }
-        };
-        let is_graph = matches!(met, Met::Everywhere);
-        let mut most: f64 = 0.0;
-        for half in halves {
-            most = most.max(self.height(half, conditions, limit, halvings - 1, is_graph)?);
-            if most > limit {
-                break;
+                Met::Unknown => {
+                    let halves = self.halves(&part, &patch, &weights);
+                    return self.higher(halves, conditions, limit, halvings - 1, false);
+                }
             }
         }
-        Some(most)
+        let bound = patch.largest(&height, normal, &part).max(at_corners);
+        if bound <= limit || is_last {
+            return Some(bound);
+        }
+        let halves = self.halves(&part, &patch, &[height]);
+        self.higher(halves, conditions, limit, halvings - 1, true)
+    }
+
+    /// The larger bound of two parts, as [`Self::height`].
+    fn higher(
+        &mut self,
+        [a, b]: [[Corner; 3]; 2],
+        conditions: &Conditions,
+        limit: f64,
+        halvings: u32,
+        is_graph: bool,
+    ) -> Option<f64> {
+        let of_one = self.height(a, conditions, limit, halvings, is_graph)?;
+        if of_one > limit {
+            return Some(of_one);
+        }
+        let of_other = self.height(b, conditions, limit, halvings, is_graph)?;
+        Some(of_one.max(of_other))
     }
 
     /// The halves of a part, whose longest side is divided: that which bends most, where that is known.

@@ -21,7 +21,8 @@ const REPAIRS: usize = 40;
 const MOST_TIMES: usize = 3;
 const FEW: usize = 1_000;
 
-/// A few proofs that do not count: a triangle that cannot be proven takes a hundred times as long as others.
+/// A few proofs that do not count. A triangle that cannot be proven is looked at as often as there is a limit for, others
+/// a few times.
 const FEW_PROOFS: usize = 200;
 
 /// If there are more triangles than there may be, the tolerance is multiplied by a factor, at least by this one, and so often

@@ -67,59 +67,73 @@ fn curved_shapes_are_certified_against_the_curve() {
     }
 }
 
-/// As points, what is drawn on a sphere is where it is seen: each place of a triangle near that with the same texture
-/// coordinates.
+/// As points, what is drawn on a sphere or a torus is where it is seen: each place of a triangle near that with the same
+/// texture coordinates.
 #[test]
-fn pictures_lie_on_spheres_where_they_are_seen() {
+fn pictures_lie_where_they_are_seen() {
     use std::f64::consts::{PI, TAU};
-    let place_of = |[u, v]: [f64; 2]| {
-        let ((sin_u, cos_u), (sin_v, cos_v)) = ((TAU * u).sin_cos(), (PI * v).sin_cos());
-        DVec3::new(-sin_v * sin_u, cos_v, -sin_v * cos_u)
+    let turned = |u: f64, [out, up]: [f64; 2]| {
+        let (sin, cos) = (TAU * u).sin_cos();
+        DVec3::new(-out * sin, up, -out * cos)
     };
+    let on_sphere = |u: f64, v: f64| turned(u, [(PI * v).sin(), (PI * v).cos()]);
+    let on_torus = |u: f64, v: f64| {
+        let (sin, cos) = (TAU * v).sin_cos();
+        turned(u, [1.0 - 0.3 * cos, 0.3 * sin])
+    };
+    let pictures: [(Shape, &dyn Fn(f64, f64) -> DVec3); 2] = [
+        (Shape::sphere(1.0).unwrap(), &on_sphere),
+        (Shape::torus(1.0, 0.3).unwrap(), &on_torus),
+    ];
     let mut random = Random::new(10);
     let ahead = DVec3::new(0.3, -0.2, -1.0).normalize();
-    let mut exact = 0;
-    for (beta, observer) in [
-        (0.9, ahead * 2.0),
-        (0.9, ahead * -2.0),
-        (0.95, ahead * -4.0),
-        (0.99, ahead * 1.5),
-        (0.99, ahead * -1.5),
-        (0.999, ahead * -3.0),
-        (0.99, DVec3::new(0.1, 0.2, 0.3)),
-    ] {
-        let tolerance = Tolerance::relative(2e-3).unwrap();
-        let sighting = Sighting::new(observer, moving(beta), tolerance);
-        let source = Source::Shape(Shape::sphere(1.0).unwrap(), Appearance::default());
-        let sighted = &sighting.sighted(&sighting.placed_in(Measure::Points, source))[0];
-        let certificate = &sighted.certificate;
-        assert!(certificate.complete, "{certificate:?}");
-        if certificate.curvature > 0.0 {
-            continue;
-        }
-        exact += 1;
-        let textures = &sighted.seen.texture_coordinates()[0];
-        // The coordinates of the file are singles.
-        let room = certificate.total + 1e-6 * sighting.velocity.rapidity().exp();
-        let mut largest: f64 = 0.0;
-        for corners in sighted.seen.triangles() {
-            let corners = corners.map(|corner| corner as usize);
-            let at = corners.map(|corner| textures[corner].as_dvec2().extend(0.0));
-            for _ in 0..5 {
-                let weights = random_weights(&mut random);
-                let at = mix(at, weights);
-                let drawn = mix(corners.map(|c| sighted.seen.positions()[c]), weights);
-                let distance = sighting.seen(place_of([at.x, at.y])).distance(drawn);
-                assert!(distance <= room, "{beta}: {distance:e} {certificate:?}");
-                largest = largest.max(distance);
+    for (shape, place_of) in pictures {
+        let mut exact = 0;
+        for (beta, observer) in [
+            (0.9, ahead * 2.0),
+            (0.9, ahead * -2.0),
+            (0.95, ahead * -4.0),
+            (0.99, ahead * 1.5),
+            (0.99, ahead * -1.5),
+            (0.999, ahead * -3.0),
+            (0.99, DVec3::new(0.1, 0.2, 0.3)),
+        ] {
+            let tolerance = Tolerance::relative(2e-3).unwrap();
+            let sighting = Sighting::new(observer, moving(beta), tolerance);
+            let source = Source::Shape(shape.clone(), Appearance::default());
+            let sighted = &sighting.sighted(&sighting.placed_in(Measure::Points, source))[0];
+            let certificate = &sighted.certificate;
+            assert!(certificate.complete, "{certificate:?}");
+            if certificate.curvature > 0.0 {
+                continue;
             }
+            exact += 1;
+            let textures = &sighted.seen.texture_coordinates()[0];
+            // The coordinates of the file are singles.
+            let room = certificate.total + 1e-6 * sighting.velocity.rapidity().exp();
+            let mut largest: f64 = 0.0;
+            for corners in sighted.seen.triangles() {
+                let corners = corners.map(|corner| corner as usize);
+                let at = corners.map(|corner| textures[corner].as_dvec2().extend(0.0));
+                for _ in 0..5 {
+                    let weights = random_weights(&mut random);
+                    let at = mix(at, weights);
+                    let drawn = mix(corners.map(|c| sighted.seen.positions()[c]), weights);
+                    let distance = sighting.seen(place_of(at.x, at.y)).distance(drawn);
+                    assert!(
+                        distance <= room,
+                        "{shape:?} {beta}: {distance:e} {certificate:?}"
+                    );
+                    largest = largest.max(distance);
+                }
+            }
+            assert!(
+                largest > 0.7 * certificate.total,
+                "{shape:?} {beta}: {largest:e} {certificate:?}"
+            );
         }
-        assert!(
-            largest > 0.7 * certificate.total,
-            "{beta}: {largest:e} {certificate:?}"
-        );
+        assert!(exact >= 4, "{shape:?}: most take facets, not {exact}");
     }
-    assert!(exact >= 4, "most take facets: {exact}");
 }
 
 /// Certificates against the curve where the observer is fast, near, inside, or touches the shape, for surfaces and for points.
