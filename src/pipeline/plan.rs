@@ -115,7 +115,7 @@ impl<'a> Plan<'a> {
     /// ten times as long.
     fn is_worth_curving(&self) -> bool {
         /// Up to this fraction of the facets they are worth the time.
-        const WORTH: f64 = 0.7;
+        const WORTH: f64 = 0.75;
         let facets = self
             .facets(u64::MAX)
             .map_or(0, |shape| shape.triangle_count());

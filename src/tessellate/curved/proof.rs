@@ -57,7 +57,7 @@ const MIXED: f64 = 1.002;
 /// How often a part is halved, and how many places of a triangle are looked at.
 const HALVINGS: u32 = 40;
 const CONDITION_HALVINGS: u32 = 8;
-const MOST_LOOKS: u32 = 300;
+const MOST_LOOKS: u32 = 600;
 
 /// A triangle of which something is proven.
 pub(super) struct Proof<'a> {
