@@ -8,8 +8,8 @@ use photosurface::scene::{Measure, Place};
 use photosurface::shape::Appearance;
 use photosurface::tessellate::Precision;
 use photosurface::{
-    DVec3, Mesh, Model, Object, Observer, Part, PlacedScene, Scene, Shape, Source, SurfaceOptions,
-    Tolerance, Velocity, load_models,
+    DMat3, DVec3, Mesh, Model, Object, Observer, Part, PlacedScene, Scene, Shape, Source,
+    SurfaceOptions, Tolerance, Velocity, load_models,
 };
 
 use super::Random;
@@ -33,8 +33,8 @@ pub(crate) struct Sighted {
 }
 
 /// The least distance of a drawn place from a surface as it is seen; `seen` tells where the place of the surface is seen that is
-/// next to one at rest. From `rest` and places beside it, the steps of Levenberg and Marquardt follow the two `sides` at rest:
-/// also where the photosurface is stretched so much that no step along an axis leads nearer.
+/// next to one at rest. From `rest` and places beside it along the two `sides`, the steps of Levenberg and Marquardt lead
+/// along the surface, whatever the sides are: those of slivers may be parallel, and stand across it.
 pub(crate) fn nearest_distance(
     seen: impl Fn(DVec3) -> DVec3,
     rest: DVec3,
@@ -48,25 +48,26 @@ pub(crate) fn nearest_distance(
         [0.1, -0.2],
         [-0.1, 0.2],
     ];
-    let at = |[s, t]: [f64; 2]| seen(rest + sides[0] * s + sides[1] * t) - drawn;
+    let at = |place: DVec3| seen(place) - drawn;
+    let step = 1e-5 * sides[0].length().max(sides[1].length());
     let mut least = f64::INFINITY;
-    for mut here in STARTS {
+    for [s, t] in STARTS {
+        let mut here = rest + sides[0] * s + sides[1] * t;
         let (mut off, mut damping) = (at(here), 1e-3);
         for _ in 0..60 {
-            let difference = |step: [f64; 2]| {
-                const STEP: f64 = 1e-5;
-                let [ahead, behind] =
-                    [STEP, -STEP].map(|h| at([here[0] + step[0] * h, here[1] + step[1] * h]));
-                (ahead - behind) / (2.0 * STEP)
+            let difference = |axis: DVec3| {
+                let [ahead, behind] = [step, -step].map(|h| at(here + axis * h));
+                (ahead - behind) / (2.0 * step)
             };
-            let (u, v) = (difference([1.0, 0.0]), difference([0.0, 1.0]));
-            let (uu, vv) = (u.dot(u) * (1.0 + damping), v.dot(v) * (1.0 + damping));
-            let (uv, x, y) = (u.dot(v), u.dot(off), v.dot(off));
-            let determinant = uu * vv - uv * uv;
-            let next = [
-                here[0] - (vv * x - uv * y) / determinant,
-                here[1] - (uu * y - uv * x) / determinant,
-            ];
+            let jacobian = DMat3::from_cols(
+                difference(DVec3::X),
+                difference(DVec3::Y),
+                difference(DVec3::Z),
+            );
+            let square = jacobian.transpose() * jacobian;
+            let trace = square.x_axis.x + square.y_axis.y + square.z_axis.z;
+            let damped = square + DMat3::from_diagonal(DVec3::splat(damping * trace));
+            let next = here - damped.inverse() * (jacobian.transpose() * off);
             let there = at(next);
             if there.length() < off.length() {
                 let gain = 1.0 - there.length() / off.length();

@@ -81,7 +81,8 @@ fn pictures_lie_where_they_are_seen() {
         let (sin, cos) = (TAU * v).sin_cos();
         turned(u, [1.0 - 0.3 * cos, 0.3 * sin])
     };
-    let pictures: [(Shape, &dyn Fn(f64, f64) -> DVec3); 2] = [
+    type PlaceOf<'a> = &'a dyn Fn(f64, f64) -> DVec3;
+    let pictures: [(Shape, PlaceOf); 2] = [
         (Shape::sphere(1.0).unwrap(), &on_sphere),
         (Shape::torus(1.0, 0.3).unwrap(), &on_torus),
     ];
