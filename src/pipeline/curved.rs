@@ -120,10 +120,11 @@ pub(super) fn predicted_of_curved(plan: &Plan<'_>) -> Option<f64> {
 
 /// The prediction for a round shape that is planned as an exact surface.
 pub(super) fn predict_curved(plan: &Plan<'_>) -> Option<Predicted> {
-    let shaped = plan.placed_object.curved().filter(|_| plan.is_curved)?;
+    let triangles = plan.as_curved?;
+    let shaped = plan.placed_object.curved()?;
     let placed = plan.placed_object.parts[0].1.mesh();
     Some(Predicted {
-        triangles: predicted_of_curved(plan)?,
+        triangles,
         before: shaped.shape.coarsest_curved() as f64,
         reachable: is_reachable(&plan.tolerance, &sight_of(plan, shaped), placed),
     })

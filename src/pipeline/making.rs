@@ -39,7 +39,7 @@ struct Uncertified<'a> {
 
 /// Carries out a plan: refines where that is wanted, maps, and certifies.
 pub(super) fn make(mut plan: Plan<'_>, wanted: SurfaceOptions) -> Vec<Surface<'_>> {
-    if plan.is_curved {
+    if plan.as_curved.is_some() {
         match make_curved(&plan) {
             Some(surface) => return vec![surface],
             None => plan.take_facets(wanted),

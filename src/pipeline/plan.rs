@@ -30,8 +30,8 @@ pub(super) struct Plan<'a> {
     pub(super) granted: u64,
     /// The parts as they were placed, as seen.
     seen: Vec<MappedMesh>,
-    /// True for a round shape that is triangulated as an exact surface.
-    pub(super) is_curved: bool,
+    /// About how many triangles a round shape takes that is triangulated as an exact surface; `None` of all others.
+    pub(super) as_curved: Option<f64>,
 }
 
 /// Parts of one object at rest and as seen, before any refinement, and the limits of their errors.
@@ -101,30 +101,29 @@ impl<'a> Plan<'a> {
             shape: None,
             granted,
             seen,
-            is_curved: false,
+            as_curved: None,
         };
-        if is_curved && plan.is_worth_curving() {
-            plan.is_curved = true;
-        } else {
+        plan.as_curved = is_curved.then(|| plan.worth_curving()).flatten();
+        if plan.as_curved.is_none() {
             plan.take_facets(wanted);
         }
         plan
     }
 
-    /// Whether a round shape takes clearly fewer triangles as an exact surface than facets of one resolution: each takes about
-    /// ten times as long.
-    fn is_worth_curving(&self) -> bool {
+    /// About how many triangles a round shape takes as an exact surface, if that is clearly fewer than facets of one resolution:
+    /// each takes about ten times as long.
+    fn worth_curving(&self) -> Option<f64> {
         /// Up to this fraction of the facets they are worth the time.
         const WORTH: f64 = 0.75;
         let facets = self
             .facets(u64::MAX)
             .map_or(0, |shape| shape.triangle_count());
-        predicted_of_curved(self).is_some_and(|predicted| predicted <= WORTH * facets as f64)
+        predicted_of_curved(self).filter(|&predicted| predicted <= WORTH * facets as f64)
     }
 
     /// Gives a shape, a round one too, facets of one resolution, as the tolerance asks for.
     pub(super) fn take_facets(&mut self, wanted: SurfaceOptions) {
-        self.is_curved = false;
+        self.as_curved = None;
         let Some(shaped) = &self.placed_object.shaped else {
             return;
         };

@@ -31,7 +31,7 @@ pub(super) fn make_together<'a>(
     mut plans: Vec<Plan<'a>>,
     wanted: SurfaceOptions,
 ) -> Vec<Vec<Surface<'a>>> {
-    if plans.iter().any(|plan| plan.is_curved) {
+    if plans.iter().any(|plan| plan.as_curved.is_some()) {
         match make_curved_together(placed_object, &mut plans) {
             Some(surfaces) => return vec![surfaces],
             None => plans.iter_mut().for_each(|plan| plan.take_facets(wanted)),

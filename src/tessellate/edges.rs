@@ -1,13 +1,13 @@
 //! Division of the edges of a mesh: each edge once, so that all its triangles agree.
 
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::across::Facet;
 use super::adjacency::{Adjacency, Member, SharedEdge};
+use super::count::Count;
 use super::edge::{EDGE_SHARE, EdgeRule, SPARED, division};
 use super::{Allowance, Motion};
 use crate::mesh::Mesh;
@@ -32,35 +32,6 @@ pub(super) struct Edges {
     /// index of its first new vertex.
     pub(super) divisions: HashMap<[u32; 2], (Vec<f64>, u32)>,
     pub(super) origins: Vec<Origin>,
-}
-
-/// A count to which many threads add and which must not exceed a limit.
-///
-/// Whether the sum exceeds the limit does not depend on the number of threads; which thread notices it first does.
-pub(super) struct Count {
-    sum: AtomicU64,
-    most: u64,
-}
-
-impl Count {
-    pub(super) fn up_to(most: u64) -> Self {
-        Self {
-            sum: AtomicU64::new(0),
-            most,
-        }
-    }
-
-    /// The remainder up to the limit.
-    pub(super) fn left(&self) -> u64 {
-        self.most.saturating_sub(self.sum.load(Ordering::Relaxed))
-    }
-
-    /// Adds to the count; whether the sum is within the limit.
-    #[must_use]
-    fn add(&self, count: u64) -> bool {
-        let before = self.sum.fetch_add(count, Ordering::Relaxed);
-        before.saturating_add(count) <= self.most
-    }
 }
 
 /// The two vertices of an edge in an order that depends on their positions, so that both sides of a seam have the same

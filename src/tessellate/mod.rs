@@ -16,6 +16,7 @@ mod along;
 mod ceiling;
 mod certificate;
 mod chart;
+mod count;
 mod curved;
 mod edge;
 mod edges;

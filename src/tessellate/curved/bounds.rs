@@ -9,6 +9,7 @@ use super::net::Net;
 use super::proof::Proof;
 use super::sight::{About, Sight};
 use crate::shape::{Piece, Spot};
+use crate::tessellate::count::Count;
 
 /// Room for the rounding of a bound.
 const UP: f64 = 1.0 + 1e-9;
@@ -16,9 +17,12 @@ const UP: f64 = 1.0 + 1e-9;
 /// The bounds of each triangle, one for each sight: lengths in the observer's frame.
 pub(super) type BoundsOf = HashMap<usize, Vec<f64>>;
 
-/// The bounds of these triangles.
-pub(super) fn proven(net: &Net<'_>, triangles: &[usize]) -> BoundsOf {
-    bounds_of(net, triangles, bound_of)
+/// The bounds of these triangles; `None` if their proofs take more looks at places than may still be counted.
+pub(super) fn proven(net: &Net<'_>, triangles: &[usize], looks: &Count) -> Option<BoundsOf> {
+    bounds_of(net, triangles, |triangle, number, sight| {
+        let (bound, taken) = bound_of(net, triangle, number, sight);
+        looks.add(taken).then_some(bound)
+    })
 }
 
 /// Bounds on the distance of places with the same weights, whatever the task is about.
@@ -26,20 +30,24 @@ pub(super) fn points_of(net: &Net<'_>) -> BoundsOf {
     let alive = (0..net.triangles.len()).filter(|&t| net.alive[t]);
     match net.task.about {
         About::Points => BoundsOf::new(),
-        About::Surface => bounds_of(net, &alive.collect::<Vec<_>>(), of_points),
+        About::Surface => {
+            let bound =
+                |triangle, number, sight: &Sight| Some(of_points(net, triangle, number, sight));
+            bounds_of(net, &alive.collect::<Vec<_>>(), bound).expect("each triangle has a bound")
+        }
     }
 }
 
-/// The bounds of these triangles, each found by `bound`.
+/// The bounds of these triangles, each found by `bound`; `None` if that finds none.
 fn bounds_of(
     net: &Net<'_>,
     triangles: &[usize],
-    bound: fn(&Net<'_>, usize, usize, &Sight) -> f64,
-) -> BoundsOf {
+    bound: impl Fn(usize, usize, &Sight) -> Option<f64> + Sync,
+) -> Option<BoundsOf> {
     let each = triangles.par_iter().map(|&triangle| {
         let sights = net.task.sights.iter().enumerate();
-        let bounds = sights.map(|(number, sight)| bound(net, triangle, number, sight) * UP);
-        (triangle, bounds.collect())
+        let bounds = sights.map(|(number, sight)| Some(bound(triangle, number, sight)? * UP));
+        Some((triangle, bounds.collect::<Option<_>>()?))
     });
     each.collect()
 }
@@ -55,7 +63,8 @@ fn of_points(net: &Net<'_>, triangle: usize, number: usize, sight: &Sight) -> f6
     }
 }
 
-fn bound_of(net: &Net<'_>, triangle: usize, number: usize, sight: &Sight) -> f64 {
+/// A bound within what is allowed, or any number above that; and how many places were looked at for it.
+fn bound_of(net: &Net<'_>, triangle: usize, number: usize, sight: &Sight) -> (f64, u64) {
     let (corners, of) = (net.triangles[triangle], net.of[triangle]);
     let seen = net.seen_by(number, corners);
     let limit = sight.allowed(seen) / UP;
@@ -64,7 +73,7 @@ fn bound_of(net: &Net<'_>, triangle: usize, number: usize, sight: &Sight) -> f64
     let (rims, beside) = net.arcs(triangle);
     let is_at_rim = rims.iter().any(Option::is_some);
     let mut proof = Proof::new(facet, about, sight, seen, rims);
-    match about {
+    let bound = match about {
         About::Surface if is_at_rim => proof.of_rim(beside, limit),
         About::Surface => {
             let mut normals = net.normals_by(number, corners, of);
@@ -75,18 +84,18 @@ fn bound_of(net: &Net<'_>, triangle: usize, number: usize, sight: &Sight) -> f64
             }
             proof.of_surface(normals, limit)
         }
-        About::Points => {
-            let bound = proof.of_points(limit);
-            match is_at_rim && bound <= limit {
-                // The arcs of a lid are covered too.
-                true => {
-                    let mut proof = Proof::new(facet, About::Surface, sight, seen, rims);
-                    bound.max(proof.of_rim(beside, limit))
-                }
-                false => bound,
-            }
-        }
+        About::Points => proof.of_points(limit),
+    };
+    let looks = proof.looks();
+    if about == About::Points && is_at_rim && bound <= limit {
+        // The arcs of a lid are covered too.
+        let mut proof = Proof::new(facet, About::Surface, sight, seen, rims);
+        return (
+            bound.max(proof.of_rim(beside, limit)),
+            looks + proof.looks(),
+        );
     }
+    (bound, looks)
 }
 
 impl Net<'_> {

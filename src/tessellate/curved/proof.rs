@@ -54,7 +54,7 @@ const SLOPE_ROOM: f64 = 0.9;
 /// Room for the bend of the way between the places that two neighbours take for one place of their edge.
 const MIXED: f64 = 1.002;
 
-/// How often a part is halved, and how many places of a triangle are looked at.
+/// How often a part is halved, and how many places of a triangle are looked at in one way.
 const HALVINGS: u32 = 40;
 const CONDITION_HALVINGS: u32 = 8;
 const MOST_LOOKS: u32 = 600;
@@ -65,7 +65,9 @@ pub(super) struct Proof<'a> {
     straight: Bent,
     sight: &'a Sight,
     seen: [DVec3; 3],
+    /// How many places have been looked at, and up to how many parts are halved.
     looks: u32,
+    most: u32,
 }
 
 /// What has to hold for the patch to be a graph.
@@ -151,7 +153,13 @@ impl<'a> Proof<'a> {
             sight,
             seen,
             looks: 0,
+            most: MOST_LOOKS,
         }
+    }
+
+    /// How many places have been looked at.
+    pub(super) fn looks(&self) -> u64 {
+        u64::from(self.looks)
     }
 
     /// An upper bound on the distance of places with the same weights; where there is none within `limit`, any number above
@@ -175,12 +183,12 @@ impl<'a> Proof<'a> {
     /// An upper bound on the distance of places with the same weights, in the chart that is better for it; where there is none
     /// within `limit`, any number above it.
     pub(super) fn of_any_chart(&mut self, limit: f64) -> f64 {
-        self.looks = 0;
+        self.most = self.looks + MOST_LOOKS;
         let bent = self.of_points(limit / MIXED) * MIXED;
         if bent <= limit {
             return bent;
         }
-        self.looks = 0;
+        self.most = self.looks + MOST_LOOKS;
         self.chart = self.straight;
         bent.min(self.of_points(limit / MIXED) * MIXED)
     }
@@ -284,7 +292,7 @@ impl<'a> Proof<'a> {
         }
         let patch = Patch::new(&self.chart, self.sight, &part);
         let height = patch.bend(self.sight, normal);
-        let is_last = halvings == 0 || self.looks > MOST_LOOKS;
+        let is_last = halvings == 0 || self.looks > self.most;
         if !is_graph {
             let weights: [Bend; 3] = from_fn(|k| patch.bend(self.sight, conditions.gradients[k]));
             match conditions.met(&part, &patch, &height, &weights) {
@@ -359,7 +367,7 @@ impl<'a> Proof<'a> {
         let bulge = length(&|k| patch.bulge(&bends[k]));
         let each = length(&|k| patch.largest(&bends[k], axes[k], &part));
         let bound = (at_corners + bulge).min(each);
-        if bound <= limit || halvings == 0 || self.looks > MOST_LOOKS {
+        if bound <= limit || halvings == 0 || self.looks > self.most {
             return bound.max(at_corners);
         }
         let [a, b] = self.halves(&part, &patch, &bends);

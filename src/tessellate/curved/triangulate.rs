@@ -12,19 +12,25 @@ use super::sight::About;
 use super::sight::Sight;
 use crate::mesh::Mesh;
 use crate::shape::{Body, Piece, Shape, Spot};
+use crate::tessellate::count::Count;
 
 /// How often triangles that are not proven are divided.
 const REPAIRS: usize = 40;
 
-/// How many times as many triangles as before there may be after each of refinement and repairs, and how many times as many
-/// proofs; and a few of each that do not count.
+/// How many times as many triangles as before there may be after each of refinement and repairs, and a few that do not count.
 const MOST_TIMES: usize = 3;
 const FEW: usize = 1_000;
 
-/// If there are more triangles than there may be, the tolerance is multiplied by a factor, at least by this one, and so often
-/// at most.
+/// How many looks at places each proof may take, and some that do not count. Most take 10 to 40; small meshes with tips take
+/// most.
+const LOOKS: u64 = 100;
+const SOME_LOOKS: u64 = 60_000;
+
+/// If there are more triangles than there may be, the tolerance is multiplied by a factor, at least by this one; after a few
+/// times the least factor is squared each time.
 const LOOSER: f64 = 1.15;
-const LOOSENINGS: usize = 200;
+const GENTLY: usize = 5;
+const LOOSENINGS: usize = 18;
 
 /// The triangles of a round shape.
 #[derive(Clone, Debug)]
@@ -46,8 +52,8 @@ pub(crate) fn triangulate(
 ) -> Option<Triangulated> {
     let pieces = shape.pieces(about == About::Points);
     let most = usize::try_from(most).unwrap_or(usize::MAX);
-    let mut looser = 1.0;
-    for _ in 0..LOOSENINGS {
+    let (mut looser, mut factor) = (1.0, LOOSER);
+    for times in 0..LOOSENINGS {
         let aimed: Vec<Sight> = sights.iter().map(|sight| sight.loosened(looser)).collect();
         let task = Task {
             pieces: &pieces,
@@ -56,7 +62,12 @@ pub(crate) fn triangulate(
         };
         match within(task, most) {
             Ok(made) => return made.map(|(net, bounds)| assembled(shape, &net, bounds)),
-            Err(count) => looser *= (count as f64 / most.max(1) as f64).max(LOOSER),
+            Err(count) => {
+                looser *= factor.max(count as f64 / most.max(1) as f64);
+                if times >= GENTLY {
+                    factor *= factor;
+                }
+            }
         }
     }
     None
@@ -93,13 +104,10 @@ fn repaired(net: &mut Net<'_>, most: usize) -> Option<BoundsOf> {
     let mut bounds = BoundsOf::new();
     let mut open: Vec<usize> = (0..net.triangles.len()).filter(|&t| net.alive[t]).collect();
     let most = most.min(MOST_TIMES * open.len() + FEW);
-    let mut proofs = MOST_TIMES * open.len() + FEW;
+    let proofs = open.len() * net.task.sights.len();
+    let looks = Count::up_to(LOOKS * proofs as u64 + SOME_LOOKS);
     for _ in 0..=REPAIRS {
-        if open.len() > proofs {
-            break;
-        }
-        proofs -= open.len();
-        let found = proven(net, &open);
+        let found = proven(net, &open, &looks)?;
         let failed = open.iter().copied();
         let failed: Vec<usize> = failed
             .filter(|t| !(net.share(*t, &found[t]).1 <= 1.0))
