@@ -95,6 +95,9 @@ class Farm:
                 self.client.subscribe_topic("all", self.heard)
                 self.client.register_plugin(worker.Inputs(self.job), name=self.job.name)
                 return
+            except ValueError as error:
+                raise job.Refused(f"--scheduler is {self.options.scheduler}, expected an address such as tcp://10.0.0.1:8786, "
+                                  "or local") from error
             except LOST as error:
                 if time.monotonic() > end or self.cluster:
                     raise job.Refused(f"--scheduler {self.options.scheduler}: {error}") from error

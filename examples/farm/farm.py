@@ -19,6 +19,9 @@ from pathlib import Path
 import client
 import job
 
+TABLES = (".csv", ".json")
+FILMS = (".gif", ".png", ".webp", ".mp4")
+
 
 def flags():
     parser = argparse.ArgumentParser(
@@ -63,6 +66,10 @@ def main(words):
             arguments += ["--fps", options.fps]
         else:
             raise job.Refused("--fps is for --film")
+    for name, extensions in (("table", TABLES), ("film", FILMS)):
+        file = getattr(options, name)
+        if file and Path(file).suffix.lower() not in extensions:
+            raise job.Refused(f"--{name} is {file}, expected a file named {', '.join(extensions)}")
     work = job.Job(options, arguments)
     rows = client.Farm(options, work).run()
     if options.film and not any(row["failed"] for row in rows):

@@ -43,6 +43,8 @@ class Job:
                 raise Refused(f"{output['file']} holds {end - first} steps; add --split, for a file of each step")
             self.outputs.setdefault(first, []).append(output)
         self.finished = [n for n, files in self.outputs.items() if all(file["finished"] for file in files)]
+        self.resumed_are_certified = all(
+            file["certified"] for n in self.finished for file in self.outputs[n])
         self.files = self.read(plan["inputs"], options.send_program)
         if is_render and len(self.outputs) - len(self.finished) > 1:
             self.look()
@@ -136,7 +138,8 @@ class Job:
         for line in cells:
             print("  ".join([cell.rjust(width) for cell, width in zip(line, widths)] + [line[-1]]).rstrip())
         if self.finished:
-            print(f"{len(self.finished)} of {self.of} were finished before")
+            but = "" if self.resumed_are_certified else ", not all within their tolerance"
+            print(f"{len(self.finished)} of {self.of} were finished before{but}")
         if path and path.endswith(".json"):
             content = json.dumps({"version": self.version, "total": total, "chunks": rows}, indent=1) + "\n"
         elif path:
@@ -150,7 +153,8 @@ class Job:
     def status(self, rows):
         if any(row["failed"] for row in rows):
             return 2
-        return 0 if all(row["certified"] == row["steps"] for row in rows) else 1
+        done = all(row["certified"] == row["steps"] for row in rows)
+        return 0 if done and self.resumed_are_certified else 1
 
 
 def text(cell):

@@ -226,9 +226,8 @@ pub(super) fn made(args: &ExportArgs, loaded: &Loaded) -> anyhow::Result<Outcome
 /// The files of a level of detail.
 fn planned(level: &ExportLevel) -> Vec<PlannedFile> {
     let files = level.files().iter().zip(level.finished()).enumerate();
-    let planned = files.map(|(number, (file, seal))| {
-        PlannedFile::new(file, level.steps_of(number), seal.is_some())
-    });
+    let planned =
+        files.map(|(number, (file, seal))| PlannedFile::new(file, level.steps_of(number), seal));
     planned.collect()
 }
 
@@ -285,6 +284,11 @@ impl ExportArgs {
     /// The file that names all files, if it is given.
     pub(super) fn output_file(&self) -> Option<&Path> {
         self.output.output.as_deref()
+    }
+
+    /// The file of the report, if it is given.
+    pub(super) fn report_file(&self) -> Option<&Path> {
+        self.output.report.as_deref()
     }
 
     /// The settings of the job; the input was read from `start` to now.

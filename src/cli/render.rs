@@ -212,7 +212,7 @@ pub(super) fn made(args: &RenderArgs, loaded: &Loaded) -> anyhow::Result<Outcome
     let of = settings.picture_count(steps);
     if args.work.plans() {
         let planned = match &film {
-            Some(film) => vec![PlannedFile::new(film.path, drawn.clone(), false)],
+            Some(film) => vec![PlannedFile::new(film.path, drawn.clone(), None)],
             None => drawn
                 .clone()
                 .map(|number| {
@@ -221,7 +221,7 @@ pub(super) fn made(args: &RenderArgs, loaded: &Loaded) -> anyhow::Result<Outcome
                     } else {
                         number..number + 1
                     };
-                    PlannedFile::new(&files[number], steps, resumed.contains_key(&number))
+                    PlannedFile::new(&files[number], steps, resumed.get(&number).copied())
                 })
                 .collect(),
         };

@@ -7,7 +7,7 @@ use std::sync::Mutex;
 
 use anyhow::{Context, ensure};
 use photosurface::jobs::Finished;
-use photosurface::write::Fingerprint;
+use photosurface::write::{Fingerprint, Seal};
 use photosurface::{Cancelled, Progress};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -265,17 +265,22 @@ pub(super) struct PlannedFile {
     pub(super) steps: [usize; 2],
     /// Whether an earlier run with --resume has finished it.
     pub(super) finished: bool,
+    /// Of a finished file whether everything in it is certified.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) certified: Option<bool>,
     /// Why there will be no file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) error: Option<String>,
 }
 
 impl PlannedFile {
-    pub(super) fn new(file: &Path, steps: Range<usize>, finished: bool) -> Self {
+    /// A file with these steps, and its seal if it is finished.
+    pub(super) fn new(file: &Path, steps: Range<usize>, seal: Option<Seal>) -> Self {
         Self {
             file: Some(file.display().to_string()),
             steps: [steps.start, steps.end],
-            finished,
+            finished: seal.is_some(),
+            certified: seal.map(|seal| seal.is_certified),
             error: None,
         }
     }

@@ -115,10 +115,12 @@ impl<'a> Plan<'a> {
     fn worth_curving(&self) -> Option<f64> {
         /// Up to this fraction of the facets they are worth the time.
         const WORTH: f64 = 0.75;
+        /// So many take a minute, and facets in the same time are nearer to the tolerance.
+        const MOST: f64 = 2e6;
         let facets = self
             .facets(u64::MAX)
             .map_or(0, |shape| shape.triangle_count());
-        predicted_of_curved(self).filter(|&predicted| predicted <= WORTH * facets as f64)
+        predicted_of_curved(self).filter(|&predicted| predicted <= MOST.min(WORTH * facets as f64))
     }
 
     /// Gives a shape, a round one too, facets of one resolution, as the tolerance asks for.

@@ -5,9 +5,14 @@ use glam::{DAffine3, DVec2, DVec3};
 use super::shape_placement::{ShapePlacement, SmoothHit};
 use crate::shape::Band;
 
+/// A meeting that is no farther than this from the origin of the ray, in radii of the shape, is none.
+const ON_SURFACE: f64 = 1e-12;
+
 /// A closed surface of straight bands turned about an axis, or what turning and stretching makes of it.
 pub(super) struct Turned {
     bands: Vec<Band>,
+    /// No place is farther from the middle, in the shape's own coordinates.
+    radius: f64,
     placed: ShapePlacement,
 }
 
@@ -17,6 +22,7 @@ impl Turned {
         let radius = ends.map(DVec2::length).fold(0.0, f64::max);
         Self {
             bands,
+            radius,
             placed: ShapePlacement::new(radius, model_to_rest),
         }
     }
@@ -27,8 +33,8 @@ impl Turned {
 
     /// The nearest hit farther than `beyond` and not as far as `limit`.
     ///
-    /// The ray is followed from its point closest to the middle, so that the numbers are as small as the shape,
-    /// however far away the origin is.
+    /// The ray of a far origin is followed from its point closest to the middle, so that the numbers are as small as the
+    /// shape. What is as good as at the origin is not met.
     pub(super) fn cast(
         &self,
         origin: DVec3,
@@ -39,20 +45,27 @@ impl Turned {
         let (origin, direction) = self.placed.ray_to_model(origin, direction);
         let speed = direction.length();
         let direction = direction / speed;
-        let middle = -origin.dot(direction);
-        let closest = origin + direction * middle;
+        // From the tip of a cone both meetings are at the origin, which is exact only from there.
+        let middle = match origin.length() < 2.0 * self.radius {
+            true => 0.0,
+            false => -origin.dot(direction),
+        };
+        let start = origin + direction * middle;
+        // A surface that the origin is on is met there or not, as rounding has it.
+        let on_surface = ON_SURFACE * self.radius;
         let mut nearest: Option<(f64, &Band)> = None;
         for band in &self.bands {
-            for after in meetings(band, closest, direction).into_iter().flatten() {
+            for after in meetings(band, start, direction).into_iter().flatten() {
                 let distance = (middle + after) / speed;
                 let is_nearest = nearest.is_none_or(|(found, _)| distance < found);
-                if distance > beyond && distance < limit && is_nearest {
+                let is_ahead = distance > beyond && middle + after > on_surface;
+                if is_ahead && distance < limit && is_nearest {
                     nearest = Some((distance, band));
                 }
             }
         }
         let (distance, band) = nearest?;
-        let place = closest + direction * (distance * speed - middle);
+        let place = start + direction * (distance * speed - middle);
         let outwards = DVec2::new(place.x, place.z).normalize_or_zero() * band.normal.x;
         let normal = DVec3::new(outwards.x, band.normal.y, outwards.y);
         Some(SmoothHit {
@@ -160,6 +173,41 @@ mod tests {
             }
             assert!(compared > 1000, "{compared}");
         }
+    }
+
+    /// What is seen from the tip of a cone: its base through its inside, and beside that nothing.
+    #[test]
+    fn from_its_tip_a_cone_is_seen_from_inside() {
+        let there = DAffine3::from_scale_rotation_translation(
+            DVec3::splat(0.7),
+            DQuat::from_euler(glam::EulerRot::XYZ, 0.5, 1.0, -0.3),
+            DVec3::new(0.5, -1.0, 2.0),
+        );
+        let cone = Shape::cone(1.0, 2.0).unwrap();
+        let turned = Turned::new(cone.bands().unwrap(), there);
+        let tip = there.transform_point3(DVec3::Y);
+        let (mut through, mut beside) = (0, 0);
+        for k in 0..10_000 {
+            let angle = f64::from(k) * 2.399_963;
+            let height = (f64::from(k) + 0.5) / 5000.0 - 1.0;
+            let flat = (1.0 - height * height).sqrt();
+            // The base is 2 below, with a radius of 1.
+            let out = 2.0 * flat / -height;
+            if (out - 1.0).abs() < 1e-9 {
+                continue;
+            }
+            let direction = DVec3::new(flat * angle.cos(), height, flat * angle.sin());
+            let hit = turned.cast(tip, there.transform_vector3(direction), 0.0, f64::MAX);
+            if height < 0.0 && out < 1.0 {
+                let error = (hit.expect("the base").distance + 2.0 / height).abs();
+                assert!(error < 1e-14, "{k}: {error}");
+                through += 1;
+            } else {
+                assert!(hit.is_none(), "{k}: {}", hit.unwrap().distance);
+                beside += 1;
+            }
+        }
+        assert!(through > 500 && beside > 9000, "{through} {beside}");
     }
 
     /// A cylinder 1e8 away, hit 1 beside its axis; along its axis, and through its wall from inside.

@@ -119,13 +119,13 @@ fn of_json(value: Value, common: &Common<'_>) -> anyhow::Result<Vec<Configuratio
         flags.extend(run);
         let command = configured(&command, input.as_deref(), &name, flags, common)
             .with_context(|| format!("runs[{number}] \"{name}\""))?;
-        if let Some(file) = command.output()
-            && let Some(other) = files.insert(file.to_owned(), name.clone())
-        {
-            bail!(
-                "runs[{number}] \"{name}\" writes {}, which \"{other}\" writes too; expected a file for each",
-                file.display()
-            );
+        for file in command.files() {
+            if let Some(other) = files.insert(file.to_owned(), name.clone()) {
+                bail!(
+                    "runs[{number}] \"{name}\" writes {}, which \"{other}\" writes too; expected a file for each",
+                    file.display()
+                );
+            }
         }
         configurations.push(Configuration { name, command });
     }
@@ -168,22 +168,15 @@ fn configured(
         // Runs are not made in parts, so that none needs an overview.
         flags.insert("plan".to_owned(), "files".into());
     }
-    let mut arguments = vec![command.to_owned()];
-    for (flag, value) in flags {
-        arguments.extend(argument(&flag, value)?);
-    }
-    if let Some(input) = input {
-        arguments.push("--".to_owned());
-        arguments.push(input.to_string_lossy().into_owned());
-    }
+    let input = input.map(|input| input.to_string_lossy().into_owned());
     let parsed = match command {
-        "render" => parsed(arguments).map(|args| Configured::Render(Box::new(args))),
-        _ => parsed(arguments).map(|args| Configured::Export(Box::new(args))),
+        "render" => parsed(command, flags, input).map(|args| Configured::Render(Box::new(args))),
+        _ => parsed(command, flags, input).map(|args| Configured::Export(Box::new(args))),
     };
     let configured = parsed?;
     ensure!(
-        !configured.output().is_some_and(is_stdout),
-        "\"output\" is -, expected a file for each run"
+        !configured.files().into_iter().any(is_stdout),
+        "a file is named -, expected files of each run"
     );
     Ok(configured)
 }
@@ -211,15 +204,37 @@ fn argument(flag: &str, value: Value) -> anyhow::Result<Option<String>> {
 }
 
 /// The arguments of a command as its flags say.
-fn parsed<T: Args + FromArgMatches>(arguments: Vec<String>) -> anyhow::Result<T> {
-    let command = T::augment_args(clap::Command::new("run")).disable_help_flag(true);
+fn parsed<T: Args + FromArgMatches>(
+    name: &str,
+    flags: Map<String, Value>,
+    input: Option<String>,
+) -> anyhow::Result<T> {
+    let mut command = T::augment_args(clap::Command::new("run")).disable_help_flag(true);
+    command.build();
+    let needs_value = |flag: &str| {
+        let mut arguments = command.get_arguments();
+        let argument = arguments.find(|argument| argument.get_long() == Some(flag));
+        let values = argument.and_then(|argument| argument.get_num_args());
+        values.is_some_and(|values| values.min_values() > 0)
+    };
+    let mut arguments = vec![name.to_owned()];
+    for (flag, value) in flags {
+        ensure!(
+            value != Value::Bool(true) || !needs_value(&flag),
+            "\"{flag}\" is true, expected a value"
+        );
+        arguments.extend(argument(&flag, value)?);
+    }
+    arguments.extend(input.into_iter().flat_map(|input| ["--".to_owned(), input]));
     let matches = command.try_get_matches_from(arguments);
     let parsed = matches.and_then(|matches| T::from_arg_matches(&matches));
     parsed.map_err(|error| {
         let text = error.to_string();
         // Beside what is wrong there is how the command is used, which nobody asked for.
         let lines = text.lines().take_while(|line| !line.starts_with("Usage"));
-        let lines = lines.map(str::trim).filter(|line| !line.is_empty());
+        let lines = lines.map(str::trim);
+        // In a list of runs no word passes for a value.
+        let lines = lines.filter(|line| !line.is_empty() && !line.starts_with("tip: to pass"));
         let told = lines.collect::<Vec<_>>().join("; ");
         let told = told.trim_start_matches("error: ");
         let told = told.split("; For more information").next().unwrap_or(told);
@@ -228,12 +243,13 @@ fn parsed<T: Args + FromArgMatches>(arguments: Vec<String>) -> anyhow::Result<T>
 }
 
 impl Configured {
-    /// The file that names all files of the run.
-    fn output(&self) -> Option<&Path> {
-        match self {
-            Self::Export(args) => args.output_file(),
-            Self::Render(args) => args.output_file(),
-        }
+    /// The files that the flags name; the first one names all files of its kind.
+    pub(super) fn files(&self) -> Vec<&Path> {
+        let files = match self {
+            Self::Export(args) => [args.output_file(), args.report_file()],
+            Self::Render(args) => [args.output_file(), None],
+        };
+        files.into_iter().flatten().collect()
     }
 }
 
@@ -326,10 +342,7 @@ mod tests {
             "runs": [{}, { "name": "b", "beta": null, "velocity": [0.1, -0.2, 0], "format": "ply" }] }),
         );
         let runs = runs.unwrap();
-        let outputs: Vec<_> = runs
-            .iter()
-            .map(|run| run.command.output().unwrap())
-            .collect();
+        let outputs: Vec<_> = runs.iter().map(|run| run.command.files()[0]).collect();
         assert_eq!(
             outputs,
             [Path::new("out/run000.glb"), Path::new("out/b.ply")]
@@ -366,7 +379,20 @@ mod tests {
                 json!([{ "output": "x.glb" }, { "output": "x.glb" }]),
                 vec!["x.glb", "run000"],
             ),
-            (json!([{ "output": "-" }]), vec!["expected a file"]),
+            (
+                json!([{ "report": "r.json" }, { "report": "r.json" }]),
+                vec!["runs[1]", "r.json", "run000"],
+            ),
+            (
+                json!([{ "name": "a" }, { "name": "b", "report": "out/a.glb" }]),
+                vec!["runs[1]", "out/a.glb", "\"a\""],
+            ),
+            (json!([{ "output": "-" }]), vec!["expected files"]),
+            (json!([{ "report": "-" }]), vec!["expected files"]),
+            (
+                json!([{ "beta": true }]),
+                vec!["runs[0]", "\"beta\" is true", "expected a value"],
+            ),
             (json!([{ "plan": true }]), vec!["\"plan\"", "command line"]),
         ] {
             let error = read(value.clone()).err().map(|error| format!("{error:#}"));

@@ -92,8 +92,18 @@ pub(in crate::cli) fn run(args: &SweepArgs) -> anyhow::Result<Status> {
         only.end,
         counted(of, "run")
     );
-    let tables = [&args.json, &args.csv].into_iter().flatten().cloned();
-    check_destinations(tables, std::slice::from_ref(&args.file))?;
+    let tables = [&args.json, &args.csv].into_iter().flatten();
+    check_destinations(tables.clone().cloned(), std::slice::from_ref(&args.file))?;
+    for table in tables {
+        let writes_it = |run: &&Configuration| run.command.files().contains(&table.as_path());
+        if let Some(run) = configurations.iter().find(writes_it) {
+            bail!(
+                "the table would be {}, which the run \"{}\" writes; expected a file of its own",
+                table.display(),
+                run.name
+            );
+        }
+    }
     let loaded = Loaded::default();
     let chosen = configurations.iter().enumerate();
     let chosen = chosen.skip(only.start).take(only.len());
@@ -238,6 +248,7 @@ fn plan<'a>(
                     file: None,
                     steps,
                     finished: false,
+                    certified: None,
                     error: Some(format!("{error:#}")),
                 });
                 continue;

@@ -369,8 +369,15 @@ impl<'a> Net<'a> {
         let periods = piece.periods();
         (0..3).all(|k| {
             let (a, b) = (spots[k], spots[(k + 1) % 3]);
-            if let Piece::Ball { .. } = piece {
-                return a.at.dot(b.at) > -0.01;
+            match *piece {
+                Piece::Ball { .. } => return a.at.dot(b.at) > -0.01,
+                Piece::Globe { radius } => {
+                    let [p, q] = [corners[k].1, corners[(k + 1) % 3].1];
+                    if !(p.dot(q) > -0.01 * radius * radius) {
+                        return false;
+                    }
+                }
+                _ => {}
             }
             if piece.is_pole(a) || piece.is_pole(b) {
                 return true;

@@ -283,6 +283,60 @@ mod tests {
         }
     }
 
+    /// The sides of triangles, by the bits of their ends: each is there once each way.
+    fn assert_closed(mesh: &Mesh, case: &str) {
+        let positions = mesh.positions();
+        let bits = |corner: u32| positions[corner as usize].to_array().map(f64::to_bits);
+        let mut sides = HashSet::new();
+        for &[a, b, c] in mesh.triangles() {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                assert!(sides.insert((bits(from), bits(to))), "{case}");
+            }
+        }
+        assert!(
+            sides.iter().all(|&(from, to)| sides.contains(&(to, from))),
+            "{case}"
+        );
+    }
+
+    /// From many places, also of few triangles: the net covers the sphere once, and no triangle reaches across its middle.
+    #[test]
+    fn points_of_spheres_are_few_from_wherever_they_are_seen() {
+        let shape = Shape::sphere(1.0).unwrap();
+        let mut proven = 0;
+        for (k, observer) in (0..40).flat_map(|k| {
+            let along = [-8.0, -4.0, -1.5, 4.0, 6.5057][k % 5];
+            [[0.333, 2.7236], [-1.2, 0.4]].map(|[y, z]| (k, DVec3::new(along, y, z)))
+        }) {
+            let velocity = Velocity::from_beta([0.9, 0.98][k / 5 % 2], DVec3::X).unwrap();
+            let to_offset = DAffine3::from_translation(-observer);
+            let any = Sight::new(&velocity, to_offset, Allowed::Length(1.0));
+            let ends =
+                [DVec3::X, DVec3::Y, DVec3::Z].map(|end| any.seen(end).distance(any.seen(-end)));
+            let size = DVec3::from_array(ends).length();
+            let tolerance = [6e-3, 5e-3, 4.5e-3, 2e-3][k / 10] * size;
+            let sight = Sight::new(&velocity, to_offset, Allowed::Length(tolerance));
+            let sights = std::slice::from_ref(&sight);
+            let Some(made) = triangulate(&shape, sights, About::Points, u64::MAX) else {
+                continue;
+            };
+            proven += 1;
+            let case = format!("{observer} {tolerance}");
+            assert_closed(&made.mesh, &case);
+            let least = needed(&shape, &sight, About::Points).least;
+            let count = made.mesh.triangle_count();
+            assert!((count as f64) < 3.0 * least, "{case}: {count} {least}");
+            let places = made.mesh.positions();
+            let volumes = made.mesh.triangles().iter().map(|&corners| {
+                let [a, b, c] = corners.map(|corner| places[corner as usize]);
+                a.dot(b.cross(c)) / 6.0
+            });
+            let volume: f64 = volumes.sum();
+            assert!((2.5..4.2).contains(&volume), "{case}: {volume}");
+        }
+        assert!(proven > 60, "{proven}");
+    }
+
     /// Closed, and with all triangles facing outwards, for shapes with seams, poles, tips and rims.
     #[test]
     fn triangulations_are_closed() {
@@ -294,18 +348,7 @@ mod tests {
         for (shape, beta, about) in cases {
             let (shape, sight) = (shape.unwrap(), sight(beta, 5e-3, DVec3::ONE));
             let made = triangulate(&shape, &[sight], about, u64::MAX).unwrap();
-            let positions = made.mesh.positions();
-            let bits = |corner: u32| positions[corner as usize].to_array().map(f64::to_bits);
-            let mut sides = HashSet::new();
-            for &[a, b, c] in made.mesh.triangles() {
-                for (from, to) in [(a, b), (b, c), (c, a)] {
-                    assert!(sides.insert((bits(from), bits(to))), "{shape:?}");
-                }
-            }
-            assert!(
-                sides.iter().all(|&(from, to)| sides.contains(&(to, from))),
-                "{shape:?}"
-            );
+            assert_closed(&made.mesh, &format!("{shape:?}"));
             assert!(
                 made.bounds[0].iter().all(|&[bound, _]| bound <= 5e-3),
                 "{shape:?}"

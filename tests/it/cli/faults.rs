@@ -40,7 +40,7 @@ fn start(workplace: &Workplace, arguments: &str) -> Child {
 }
 
 /// So much work that it is not done before something happens.
-const LONG: &str = "--steps=-6..6/100";
+const LONG: &str = "--example plane --steps=-6..6/100";
 
 #[test]
 fn a_full_disk_is_one_error_and_changes_nothing() {

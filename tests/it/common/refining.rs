@@ -72,7 +72,7 @@ pub(crate) fn nearest_distance(
             if there.length() < off.length() {
                 let gain = 1.0 - there.length() / off.length();
                 (here, off, damping) = (next, there, damping * 0.2);
-                if gain < 1e-12 {
+                if gain < 1e-9 {
                     break;
                 }
             } else {
