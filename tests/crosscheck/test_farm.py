@@ -227,10 +227,13 @@ def test_what_cannot_be_done_is_said(cluster, here):
         (["render", "none.json"], "none.json"),
         (["render", "scene.json", "--only", "0..1"], "--only"),
         (["export", here / "scene.json", "--bta", "0.5"], "--bta"),
+        (["render", "scene.json", "--film", "film.xyz"], "--film"),
     ]:
         status, out, err = Run(here, cluster.address, *words, "--program", BINARY).ended()
         assert (status, out) == (2, ""), err
         assert err.startswith("error: ") and expected in err and len(err.splitlines()) == 1, err
+    status, out, err = Run(here, "nowhere", "render", "scene.json", "--program", BINARY).ended()
+    assert (status, out) == (2, "") and "--scheduler is nowhere" in err, err
     # A run that fails is a line of the table; the others are there.
     (here / "speeds.json").write_text(json.dumps([{"beta": 0.5}, {"beta": 1.5}, {"beta": 0.6}]))
     status, out, err = Run(here, cluster.address, *SWEEP, "--program", BINARY, "--chunk", 3).ended()
@@ -239,3 +242,11 @@ def test_what_cannot_be_done_is_said(cluster, here):
     table = json.loads((here / "table.json").read_text())
     assert (table["total"]["failed"], table["total"]["certified"]) == (1, 2)
     assert "1.5" in notes(table["chunks"])
+
+
+def test_what_an_earlier_run_could_not_certify_is_told_again(cluster, here):
+    words = ["export", "scene.json", "--steps=0,1", "--split", "--no-subdivide", "-o", "out/a.glb", "--resume"]
+    for _ in range(2):
+        status, out, err = Run(here, cluster.address, *words, "--program", BINARY).ended()
+        assert status == 1, err
+    assert "2 of 2 were finished before, not all within their tolerance" in out
