@@ -115,8 +115,8 @@ impl<'a> Plan<'a> {
     fn worth_curving(&self) -> Option<f64> {
         /// Up to this fraction of the facets they are worth the time.
         const WORTH: f64 = 0.75;
-        /// So many take a minute, and facets in the same time are nearer to the tolerance.
-        const MOST: f64 = 2e6;
+        /// More would take minutes and gigabytes, mostly for a tolerance that no number of triangles reaches.
+        const MOST: f64 = 4e6;
         let facets = self
             .facets(u64::MAX)
             .map_or(0, |shape| shape.triangle_count());

@@ -371,6 +371,7 @@ impl<'a> Net<'a> {
             let (a, b) = (spots[k], spots[(k + 1) % 3]);
             match *piece {
                 Piece::Ball { .. } => return a.at.dot(b.at) > -0.01,
+                // The middle of a longer side is next to that of the ball, from where a little aside is anywhere on it.
                 Piece::Globe { radius } => {
                     let [p, q] = [corners[k].1, corners[(k + 1) % 3].1];
                     if !(p.dot(q) > -0.01 * radius * radius) {

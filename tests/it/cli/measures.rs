@@ -139,3 +139,20 @@ fn a_surface_takes_fewer_triangles_where_the_motion_runs_along_it() {
         .run("check wrong.json")
         .error(&["wrong.json", "expected points or surface"]);
 }
+
+/// A round shape is an exact surface, whose triangles are inversely proportional to the tolerance, until these are too many.
+#[test]
+fn a_round_shape_of_millions_of_triangles_gets_facets() {
+    let workplace = Workplace::new();
+    let predicted = |tolerance: &str| {
+        let run = workplace.run(&format!(
+            "check --example sphere --measure surface --steps 0 --tolerance {tolerance} --max-triangles none --json"
+        ));
+        let check: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        check["levels"][0]["triangles"].as_f64().expect("a number")
+    };
+    let [one, two, facets] = ["5e-7", "2.5e-7", "1.25e-7"].map(predicted);
+    // Rounding takes its part of the tolerance.
+    assert!((2.0..2.3).contains(&(two / one)), "{one} {two}");
+    assert!(two < 4e6 && facets > 5.0 * two, "{two} {facets}");
+}

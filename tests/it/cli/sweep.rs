@@ -122,6 +122,12 @@ fn a_run_that_fails_does_not_end_the_others() {
     let run = workplace.run("sweep list.json ball.json");
     run.error(&["list.json", "runs[1] \"b\"", "--bta"]);
     assert!(!workplace.files().contains(&"a.glb".to_owned()));
+    workplace.write("list.json", r#"[{ "name": "a" }]"#);
+    for table in ["--csv", "--json"] {
+        let run = workplace.run(&format!("sweep list.json ball.json {table} a.glb"));
+        run.error(&["a.glb", "the run \"a\" writes"]);
+    }
+    assert!(!workplace.files().contains(&"a.glb".to_owned()));
     workplace.write("list.json", "[{},");
     workplace
         .run("sweep list.json")
