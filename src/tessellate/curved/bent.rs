@@ -1,11 +1,11 @@
 //! A chart of a triangle in which flat and curved places with equal parameters lie opposite each other.
 
-use std::array::from_fn;
-
 use glam::{DVec2, DVec3};
 
 use super::chart::{Chart, Facet};
+use super::frame::Frame;
 use super::sight::Sight;
+use super::steps::{Steps, lesser};
 use crate::shape::Jet;
 
 /// How often the middle of a side is moved.
@@ -116,75 +116,57 @@ impl Bent {
         self.facet.chart.place(self.parameters(w))
     }
 
-    /// The place with its derivatives, and bounds of second and third derivatives over a box, as [`Chart::bounds`]; last how
-    /// much first derivatives change at most from the middle of the box.
-    pub(super) fn look(&self, w: DVec2, half: DVec2) -> (Jet, [f64; 3], [f64; 4], [f64; 2]) {
+    /// The place at the middle of a frame with its derivatives by the frame's directions, and bounds of second and third
+    /// derivatives in the unit disc of the frame; last how much first derivatives change at most from the middle.
+    pub(super) fn look(&self, frame: &Frame) -> Look {
         let chart: &Chart = &self.facet.chart;
-        let q = self.parameters(w);
+        let q = self.parameters(frame.middle);
         let jet = chart.jet(q);
-        let (first, second) = (self.first(w), self.second());
+        let (by_weights, bend) = (self.first(frame.middle), self.second());
+        let [e, f] = frame.axes;
+        let q_first = frame
+            .axes
+            .map(|axis| by_weights[0] * axis.x + by_weights[1] * axis.y);
+        let q_second = [(e, e), (e, f), (f, f)].map(|(a, b)| {
+            bend[0] * (a.x * b.x) + bend[1] * (a.x * b.y + a.y * b.x) + bend[2] * (a.y * b.y)
+        });
         let [u, v] = jet.first;
         let [uu, uv, vv] = jet.second;
         let of = |a: DVec2, b: DVec2, s: DVec2| {
             uu * (a.x * b.x) + uv * (a.x * b.y + a.y * b.x) + vv * (a.y * b.y) + u * s.x + v * s.y
         };
-        let bent = Jet {
-            place: jet.place,
-            first: from_fn(|k| u * first[k].x + v * first[k].y),
-            second: [
-                of(first[0], first[0], second[0]),
-                of(first[0], first[1], second[1]),
-                of(first[1], first[1], second[2]),
-            ],
-        };
-        // Sizes of the derivatives of the parameters in the box.
-        let s = second.map(|s| s.abs());
-        let change = [s[0] * half.x + s[1] * half.y, s[1] * half.x + s[2] * half.y];
-        let f = [first[0].abs() + change[0], first[1].abs() + change[1]];
-        let q_half = f[0] * half.x + f[1] * half.y;
-        let (c, t) = chart.bounds(q, q_half);
-        let turns = chart.turns(q, q_half);
+        let steps = Steps::new(q_first, q_second);
         let sizes = [u.length(), v.length()];
-        let longest = [
-            sizes[0] + lesser(c[0] * q_half.x + c[1] * q_half.y, turns[0]),
-            sizes[1] + lesser(c[1] * q_half.x + c[2] * q_half.y, turns[1]),
-        ];
-        let one = |s: DVec2| longest[0] * s.x + longest[1] * s.y;
-        let two = |a: DVec2, b: DVec2| {
-            c[0] * a.x * b.x + c[1] * (a.x * b.y + a.y * b.x) + c[2] * a.y * b.y
-        };
-        let three = |a: DVec2, b: DVec2, d: DVec2| {
-            t[0] * a.x * b.x * d.x
-                + t[1] * (a.x * b.x * d.y + a.x * b.y * d.x + a.y * b.x * d.x)
-                + t[2] * (a.x * b.y * d.y + a.y * b.x * d.y + a.y * b.y * d.x)
-                + t[3] * a.y * b.y * d.y
-        };
-        let of_second = [
-            two(f[0], f[0]) + one(s[0]),
-            two(f[0], f[1]) + one(s[1]),
-            two(f[1], f[1]) + one(s[2]),
-        ];
-        let of_third = [
-            three(f[0], f[0], f[0]) + 3.0 * two(s[0], f[0]),
-            three(f[0], f[0], f[1]) + two(s[0], f[1]) + 2.0 * two(s[1], f[0]),
-            three(f[0], f[1], f[1]) + two(s[2], f[0]) + 2.0 * two(s[1], f[1]),
-            three(f[1], f[1], f[1]) + 3.0 * two(s[2], f[1]),
-        ];
-        let turned = from_fn(|k| {
-            let by_chart = turns[0] * f[k].x + turns[1] * f[k].y;
-            let by_bend = sizes[0] * change[k].x + sizes[1] * change[k].y;
-            let by_second = of_second[k] * half.x + of_second[k + 1] * half.y;
-            lesser(by_second, by_chart + by_bend)
-        });
-        (bent, of_second, of_third, turned)
+        let bounds = chart.bounds(q, sizes, &steps);
+        let turns = chart.turns(q, steps.half);
+        let by_turns = turns[0] * steps.sizes.x
+            + turns[1] * steps.sizes.y
+            + sizes[0] * steps.bend.x
+            + sizes[1] * steps.bend.y;
+        let second = bounds.second + bounds.of_bend;
+        Look {
+            jet: Jet {
+                place: jet.place,
+                first: q_first.map(|a| u * a.x + v * a.y),
+                second: [
+                    of(q_first[0], q_first[0], q_second[0]),
+                    of(q_first[0], q_first[1], q_second[1]),
+                    of(q_first[1], q_first[1], q_second[2]),
+                ],
+            },
+            third: bounds.third + 3.0 * bounds.mixed,
+            turned: lesser(second, by_turns),
+            is_linear: second <= by_turns || by_turns.is_nan(),
+        }
     }
 }
 
-/// The smaller of two bounds; one that is not a number is none.
-fn lesser(a: f64, b: f64) -> f64 {
-    match a <= b {
-        true => a,
-        false if b.is_nan() => f64::INFINITY,
-        false => b,
-    }
+/// A place with its derivatives by the directions of a frame, and bounds in the frame's unit disc.
+pub(super) struct Look {
+    pub(super) jet: Jet,
+    /// Of the third derivatives along unit steps.
+    pub(super) third: f64,
+    /// How much the first derivatives change from the middle, and whether in a smaller disc they change less in proportion.
+    pub(super) turned: f64,
+    pub(super) is_linear: bool,
 }

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
 use super::sight::About;
+use super::steps::{Derivatives, Steps, lesser};
 use crate::shape::{Jet, MAX_SPAN, Piece, Spot, axes_of_turn};
 
 /// A patch of a round shape with two parameters, which are linear functions of the weights of a triangle's corners.
@@ -171,7 +172,8 @@ impl Chart {
         }
     }
 
-    /// Upper bounds of second and third derivatives over a box, as [`Piece::bounds`]; infinite at the tip of a cone.
+    /// Upper bounds of what derivatives make of steps, everywhere in a part around these parameters; infinite at the tip of a
+    /// cone. `first` are the sizes of the first derivatives there.
     ///
     /// # Derivation
     ///
@@ -182,26 +184,27 @@ impl Chart {
     /// a line at the distance `p` from the centre, at the angle `a` from its foot, the third derivative has the components
     /// `(6 cos^4 sin^2 - 2 cos^6 - cos^6) / p^3` and `6 cos^5 sin / p^3`, at most `4 / p^3` together. A symmetric form
     /// of three vectors is largest where they are one.
-    pub(super) fn bounds(&self, q: DVec2, half: DVec2) -> ([f64; 3], [f64; 4]) {
-        match *self {
-            Self::OfPiece(piece) => piece.bounds(q, half),
+    pub(super) fn bounds(&self, q: DVec2, first: [f64; 2], steps: &Steps) -> Derivatives {
+        let (second, third) = match *self {
+            Self::OfPiece(piece) => piece.bounds(q, steps.half),
             Self::Unrolled { radius, .. } => {
-                let (t, w) = least_and_aside(q, half);
+                let (t, w) = least_and_aside(q, steps.half);
                 if t <= 0.0 {
-                    return ([f64::INFINITY; 3], [f64::INFINITY; 4]);
+                    ([f64::INFINITY; 3], [f64::INFINITY; 4])
+                } else {
+                    let uu = radius * TAU * TAU / t;
+                    let turned = TAU * w;
+                    let third = [
+                        TAU,
+                        1.0 + turned,
+                        w * (2.0 + turned),
+                        w * w * (3.0 + turned),
+                    ];
+                    (
+                        [uu, uu * w, uu * w * w],
+                        third.map(|factor| factor * uu / t),
+                    )
                 }
-                let uu = radius * TAU * TAU / t;
-                let turned = TAU * w;
-                let third = [
-                    TAU,
-                    1.0 + turned,
-                    w * (2.0 + turned),
-                    w * w * (3.0 + turned),
-                ];
-                (
-                    [uu, uu * w, uu * w * w],
-                    third.map(|factor| factor * uu / t),
-                )
             }
             Self::Rays {
                 radius,
@@ -209,21 +212,49 @@ impl Chart {
                 axes,
             } => {
                 let y = origin + axes[0] * q.x + axes[1] * q.y;
-                let (middle, reach) = (y.length(), half.length());
+                let (middle, reach) = (y.length(), steps.reach);
                 let r = middle - reach;
                 if r <= 0.0 {
-                    return ([f64::INFINITY; 3], [f64::INFINITY; 4]);
+                    return Derivatives::UNKNOWN;
                 }
                 // The direction out turns by at most reach / r.
-                let along = axes.map(|axis| (y.dot(axis).abs() / middle + reach / r).min(1.0));
-                let factor = radius / (r * r);
-                let second =
-                    |i: usize, j: usize| factor * (1.0 + (along[i] + along[j]).powi(2)).sqrt();
-                (
-                    [second(0, 0), second(0, 1), second(1, 1)],
-                    [4.0 * radius / (r * r * r); 4],
-                )
+                let along = DVec2::from_array(axes.map(|axis| y.dot(axis))).length();
+                let along = (along / middle + reach / r).min(1.0);
+                let second = radius / (r * r) * (1.0 + 4.0 * along * along).sqrt();
+                let (length, bend) = (steps.length, steps.bend.length());
+                return Derivatives {
+                    of_bend: radius / r * bend,
+                    second: second * length * length,
+                    mixed: second * length * bend,
+                    third: 4.0 * radius / (r * r * r) * length.powi(3),
+                };
             }
+        };
+        let turns = self.turns(q, steps.half);
+        let longest = |k: usize| {
+            let change = second[k] * steps.half.x + second[k + 1] * steps.half.y;
+            first[k] + lesser(change, turns[k])
+        };
+        let (DVec2 { x, y }, bend) = (steps.sizes, steps.bend);
+        let [uu, uv, vv] = [second[0] * x * x, second[1] * x * y, second[2] * y * y];
+        let spread = steps.spread;
+        let half = 0.5 * (uu + vv);
+        let largest = half + (0.25 * (uu - vv) * (uu - vv) + uv * uv).sqrt();
+        let [a, b, c, d] = [
+            third[0] * x * x * x,
+            third[1] * x * x * y,
+            third[2] * x * y * y,
+            third[3] * y * y * y,
+        ];
+        // The largest x^2 y with x^2 + y^2 = 1 is 2 / sqrt(27).
+        let together = a.max(d) * spread + 1.1548 * (b + c) * spread * spread.sqrt();
+        Derivatives {
+            of_bend: longest(0) * bend.x + longest(1) * bend.y,
+            second: lesser(largest * spread, uu + 2.0 * uv + vv),
+            mixed: second[0] * x * bend.x
+                + second[1] * (x * bend.y + y * bend.x)
+                + second[2] * y * bend.y,
+            third: lesser(together, a + 3.0 * (b + c) + d),
         }
     }
 

@@ -2,8 +2,10 @@
 //!
 //! A `sight` is how one observer sees the shape. `metric` says which triangles are wanted where. A `net` of triangles
 //! starts with few of them, with `rims` divided already; a `front` adds vertices, `refine` divides what that has left and
-//! takes away and moves vertices. `chart`, `bent` and `patch` describe the curved patch over a triangle, `proof` bounds the
-//! distance of both, `bounds` does that for the triangles of a net. `triangulate` puts it together, and `minimum` says how many triangles are needed.
+//! takes away and moves vertices. `chart` and `bent` describe the curved patch over a triangle; `patch` bounds its
+//! derivatives over a part of it, in the part's `frame`, along `steps` of the chart; `proof` bounds the distance of both,
+//! `bounds` does that for the triangles of a net. `triangulate` puts it together, and `minimum` says how many triangles
+//! are needed.
 
 #![allow(
     clippy::needless_range_loop,
@@ -15,6 +17,7 @@ mod bounds;
 mod change;
 mod chart;
 mod estimate;
+mod frame;
 mod front;
 mod metric;
 mod minimum;
@@ -25,6 +28,7 @@ mod quadratic;
 mod refine;
 mod rims;
 mod sight;
+mod steps;
 mod triangulate;
 
 pub(crate) use minimum::needed;

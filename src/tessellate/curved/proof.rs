@@ -96,26 +96,21 @@ impl Conditions {
     /// Where a part with this patch and these bends, of its height and of the weights, keeps to the conditions.
     fn met(&self, part: &[Corner; 3], patch: &Patch, height: &Bend, weights: &[Bend; 3]) -> Met {
         // In its plane the flat triangle has the gradients of the weights themselves.
-        const OWN: [[f64; 2]; 3] = [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]];
-        const SIDES: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]];
-        // The largest shift and slope along any side: those of the middle, and with what the box adds.
+        const OWN: [DVec2; 3] = [DVec2::NEG_ONE, DVec2::X, DVec2::Y];
+        const SIDES: [DVec2; 3] = [DVec2::X, DVec2::Y, DVec2::new(-1.0, 1.0)];
+        let steepest = SLOPE_ROOM * (1.0 - 0.5 * MOST_SHIFT) * self.cosine;
+        let [a, b, c] = weights;
+        let shifted = [(a, OWN[0]), (b, OWN[1]), (c, OWN[2])];
+        // The largest shift and slope along any side: in the middle, and anywhere.
         let (mut shift, mut slope) = ([0.0f64; 2], [0.0f64; 2]);
-        for [x, y] in SIDES {
-            let of = |bend: &Bend, own: [f64; 2]| {
-                let middle = ((bend.first[0] - own[0]) * x + (bend.first[1] - own[1]) * y).abs();
-                [
-                    middle,
-                    middle + bend.first_change[0] * x.abs() + bend.first_change[1] * y.abs(),
-                ]
-            };
-            let shifts: [[f64; 2]; 3] = from_fn(|k| of(&weights[k], OWN[k]));
-            let slopes = of(height, [0.0; 2]);
+        for side in SIDES {
+            let shifts = patch.slope(&shifted, side, MOST_SHIFT);
+            let slopes = patch.slope(&[(height, DVec2::ZERO)], side, steepest / self.lean);
             for k in 0..2 {
-                shift[k] = shift[k].max(shifts.iter().map(|s| s[k]).sum());
+                shift[k] = shift[k].max(shifts[k]);
                 slope[k] = slope[k].max(slopes[k]);
             }
         }
-        let steepest = SLOPE_ROOM * (1.0 - 0.5 * MOST_SHIFT) * self.cosine;
         let fits = |k: usize| shift[k] <= MOST_SHIFT && self.lean * slope[k] <= steepest;
         let moved = |k: usize| {
             let at_corners = part
@@ -123,7 +118,8 @@ impl Conditions {
                 .map(|corner| self.gradients[k].dot(corner.error).abs());
             at_corners.fold(0.0, f64::max) + self.lines[k]
         };
-        if fits(1) && (0..3).all(|k| moved(k) + patch.bulge(&weights[k]) <= self.wide) {
+        let most = |k: usize| patch.largest(&weights[k], self.gradients[k], part) + self.lines[k];
+        if fits(1) && (0..3).all(|k| most(k) <= self.wide) {
             return Met::Everywhere;
         }
         match fits(0) && (0..3).all(|k| moved(k) <= self.wide) {
@@ -335,10 +331,9 @@ impl<'a> Proof<'a> {
     /// The halves of a part, whose longest side is divided: that which bends most, where that is known.
     fn halves(&mut self, part: &[Corner; 3], patch: &Patch, bends: &[Bend]) -> [[Corner; 3]; 2] {
         let bent = |k: usize| {
-            let side = part[(k + 2) % 3].at - part[(k + 1) % 3].at;
             bends
                 .iter()
-                .map(|bend| patch.along(bend, side))
+                .map(|bend| patch.along(bend, k))
                 .fold(0.0, f64::max)
         };
         let mut sizes: [f64; 3] = from_fn(bent);
