@@ -12,18 +12,25 @@ use super::mapped_mesh::MappedMesh;
 use super::placed_object::{PlacedObject, Shaped};
 use super::plan::Plan;
 use super::predicting::Predicted;
+use super::shared_mesh::SharedMesh;
 use crate::material::Part;
 use crate::mesh::Mesh;
-use crate::tessellate::{Allowed, Counts, Sight, needed, triangulate};
+use crate::tessellate::{Allowed, Counts, Sight, Triangulated, needed, triangulate};
 
-/// Carries out the plan of a round shape; `None` if not every triangle could be proven.
-pub(super) fn make_curved<'a>(plan: &Plan<'a>) -> Option<Surface<'a>> {
+/// Carries out the plan of a round shape, with the mesh of others if that is good enough; `None` if not every triangle could
+/// be proven.
+pub(super) fn make_curved<'a>(plan: &Plan<'a>, shared: Option<&SharedMesh>) -> Option<Surface<'a>> {
     let shaped = plan.placed_object.curved()?;
     let (name, placed) = &plan.placed_object.parts[0];
     let about = plan.tolerance.about();
     let sight = sight_of(plan, shaped);
     let most = plan.max_triangles(plan.granted);
-    let made = triangulate(&shaped.shape, std::slice::from_ref(&sight), about, most)?;
+    let fits = |made: &Triangulated| made.mesh.triangle_count() as u64 <= most;
+    let shared = shared.and_then(|shared| shared.seen_by(&sight, about));
+    let made = match shared.filter(fits) {
+        Some(made) => made,
+        None => triangulate(&shaped.shape, std::slice::from_ref(&sight), about, most)?,
+    };
     let part = shaped.part_of(made.mesh, placed);
     let seen = MappedMesh::new(plan.view(), part.mesh());
     let around = plan.tolerance.box_around([&seen]);
@@ -43,6 +50,15 @@ pub(super) fn make_curved<'a>(plan: &Plan<'a>) -> Option<Surface<'a>> {
         around: around.unwrap_or_default(),
         certificate,
     })
+}
+
+/// A mesh for the plan of a round shape with a tolerance that is smaller by this factor, for others to share; `None` if it is
+/// not planned as an exact surface, or not every triangle could be proven.
+pub(super) fn shared_mesh(plan: &Plan<'_>, tightened: f64) -> Option<SharedMesh> {
+    plan.as_curved?;
+    let shaped = plan.placed_object.curved()?;
+    let sight = sight_of(plan, shaped).loosened(tightened);
+    SharedMesh::new(&shaped.shape, sight, plan.tolerance.about())
 }
 
 /// Carries out the plans of a round shape for all steps with one mesh at rest; its surfaces at all steps, `None` if not

@@ -269,15 +269,18 @@ impl StepTolerance {
     }
 
     /// The largest distance from a curved surface, a length at rest, that the tolerance aimed at allows facets. `mesh` is
-    /// the shape as it was placed; `seen` are all parts.
-    pub(super) fn max_deviation(&self, mesh: &Mesh, seen: &[MappedMesh]) -> f64 {
+    /// the shape as it was placed; `seen` are all parts. Where the mesh has more than `most_looks` facets, so many of them are
+    /// looked at.
+    pub(super) fn max_deviation(&self, mesh: &Mesh, seen: &[MappedMesh], most_looks: usize) -> f64 {
         let rounding = self.rounding(mesh, &seen[0].extremes, self.box_around(seen), 0.0);
         let left = (self.aimed_length - rounding).max(0.5 * self.aimed_length);
-        let count = mesh.triangles().len();
+        let all = mesh.triangle_count();
+        let count = all.min(most_looks);
+        let corners_of = |index: usize| mesh.corners_of(index * (all / count));
         let max_deviation = match (self.aimed.unit(), self.aimed.number()) {
             (Unit::Degrees, degrees) => {
                 let nearest = |index| {
-                    let corners = mesh.corners_of(index);
+                    let corners = corners_of(index);
                     self.nearest(corners.map(|corner| corner - self.view.observer_rest()))
                 };
                 let share = match (0..count).any(|index| nearest(index) == DVec3::ZERO) {
@@ -290,11 +293,11 @@ impl StepTolerance {
                     let nearest = self.view.seen_distance(nearest(index));
                     // The facets that this leads to are other ones: a little room for their distances.
                     let here = (0.9 * degrees.to_radians().sin() * nearest).max(min_length);
-                    here / local_stretch(&self.view, mesh.corners_of(index))
+                    here / local_stretch(&self.view, corners_of(index))
                 });
                 allowed.reduce(|| f64::INFINITY, f64::min)
             }
-            _ => left / largest_stretch(&self.view, count, |index| mesh.corners_of(index)),
+            _ => left / largest_stretch(&self.view, count, corners_of),
         };
         CURVATURE_SHARE * max_deviation
     }

@@ -11,6 +11,7 @@ use super::curved::make_curved;
 use super::limits::Limits;
 use super::mapped_mesh::MappedMesh;
 use super::plan::{Draft, Plan};
+use super::shared_mesh::SharedMesh;
 use crate::material::Part;
 use crate::mesh::Mesh;
 use crate::tessellate::{Certificate, Counts, Refined, refine};
@@ -37,10 +38,15 @@ struct Uncertified<'a> {
     measured: Measured,
 }
 
-/// Carries out a plan: refines where that is wanted, maps, and certifies.
-pub(super) fn make(mut plan: Plan<'_>, wanted: SurfaceOptions) -> Vec<Surface<'_>> {
+/// Carries out a plan: refines where that is wanted, maps, and certifies. A round shape may have the mesh that it shares
+/// with others.
+pub(super) fn make<'a>(
+    mut plan: Plan<'a>,
+    wanted: SurfaceOptions,
+    shared: Option<&SharedMesh>,
+) -> Vec<Surface<'a>> {
     if plan.as_curved.is_some() {
-        match make_curved(&plan) {
+        match make_curved(&plan, shared) {
             Some(surface) => return vec![surface],
             None => plan.take_facets(wanted),
         }

@@ -8,12 +8,15 @@ use serde_json::Value;
 
 use super::Bounds;
 use super::batches::Batches;
+use super::company_meshes::CompanyMeshes;
+use super::curved::shared_mesh;
 use super::facts::{Facts, SceneFacts};
 use super::making::{Surface, make};
 use super::names::{self, UniqueNames, step_label};
 use super::placed_object::PlacedObject;
 use super::placing::Placing;
 use super::plan::{Plan, Unrefined};
+use super::shared_mesh::SharedMesh;
 use super::vertex_data::VertexData;
 use super::{MomentFacts, Photosurface, PlacedSceneError, SurfaceOptions};
 use crate::light_cone::{MAX_DELAYED_RAPIDITY, ModelView, View};
@@ -238,16 +241,16 @@ impl PlacedScene {
     ) -> Result<impl Iterator<Item = Photosurface>, PlacedSceneError> {
         self.check_step(step)?;
         let mut batches = Batches::of(self.objects.len());
+        let mut meshes = CompanyMeshes::new(self, step, wanted);
         let next_batch = move || {
             let batch = batches.next()?;
+            meshes.prepare(&batch, |leader, tightened| {
+                shared_mesh(&self.plan_of(leader, step, wanted), tightened)
+            });
+            let made = |object| self.made(object, step, wanted, meshes.of(object));
             let made: Vec<Made<'_>> = match batch.len() {
-                1 => vec![self.made(batch.start, step, wanted)],
-                _ => {
-                    let objects = batch.into_par_iter();
-                    objects
-                        .map(|object| self.made(object, step, wanted))
-                        .collect()
-                }
+                1 => vec![made(batch.start)],
+                _ => batch.into_par_iter().map(made).collect(),
             };
             batches.made(made.iter().map(Made::triangles).max().unwrap_or(0));
             Some(made)
@@ -263,15 +266,26 @@ impl PlacedScene {
         }))
     }
 
-    /// Makes the surfaces of one object, by its number, at one step.
-    fn made(&self, number: usize, step: usize, wanted: SurfaceOptions) -> Made<'_> {
-        let (object, placed_object) = (&self.scene.objects()[number], &self.objects[number]);
-        let plan = self.plan(object, placed_object, step, wanted);
+    /// Makes the surfaces of one object, by its number, at one step; a round shape may have a mesh that others share.
+    fn made(
+        &self,
+        number: usize,
+        step: usize,
+        wanted: SurfaceOptions,
+        shared: Option<&SharedMesh>,
+    ) -> Made<'_> {
+        let plan = self.plan_of(number, step, wanted);
         Made {
             object: number,
             shown: plan.shown,
-            surfaces: make(plan, wanted),
+            surfaces: make(plan, wanted, shared),
         }
+    }
+
+    /// The plan of one object, by its number, at one step.
+    fn plan_of(&self, number: usize, step: usize, wanted: SurfaceOptions) -> Plan<'_> {
+        let (object, placed_object) = (&self.scene.objects()[number], &self.objects[number]);
+        self.plan(object, placed_object, step, wanted)
     }
 
     /// Whether the scene has a step.

@@ -117,8 +117,10 @@ impl<'a> Plan<'a> {
         const WORTH: f64 = 0.75;
         /// More would take minutes and gigabytes, mostly for a tolerance that no number of triangles reaches.
         const MOST: f64 = 4e6;
+        /// About so many facets tell how many there would be.
+        const LOOKS: usize = 500;
         let facets = self
-            .facets(u64::MAX)
+            .facets(u64::MAX, LOOKS)
             .map_or(0, |shape| shape.triangle_count());
         predicted_of_curved(self).filter(|&predicted| predicted <= MOST.min(WORTH * facets as f64))
     }
@@ -130,7 +132,7 @@ impl<'a> Plan<'a> {
             return;
         };
         let shape = match wanted.subdivide {
-            true => self.facets(self.max_triangles(self.granted)),
+            true => self.facets(self.max_triangles(self.granted), usize::MAX),
             false => Some(shaped.shape.clone()),
         };
         let shape = shape.filter(|shape| *shape != shaped.placed);
@@ -139,15 +141,16 @@ impl<'a> Plan<'a> {
         self.shape = shape;
     }
 
-    /// The shape with the facets that the tolerance asks for, or as fine as at most `most` of them are.
-    fn facets(&self, most: u64) -> Option<Shape> {
+    /// The shape with the facets that the tolerance asks for, or as fine as at most `most` of them are, found by looking at up to
+    /// `looks` of those as placed.
+    fn facets(&self, most: u64, looks: usize) -> Option<Shape> {
         let shaped = self.placed_object.shaped.as_ref()?;
         let max_deviation = match shaped.deviation {
             // A flat shape has no other distance from itself.
             0.0 => f64::INFINITY,
             _ => {
                 let mesh = self.placed_object.parts[0].1.mesh();
-                self.tolerance.max_deviation(mesh, &self.seen)
+                self.tolerance.max_deviation(mesh, &self.seen, looks)
             }
         };
         Some(shaped.within(max_deviation, most))

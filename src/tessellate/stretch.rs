@@ -27,6 +27,10 @@ pub(crate) fn largest_stretch(
 ) -> f64 {
     let exact = |index: usize| local_stretch(view, corners(index));
     let velocity = view.relative_velocity();
+    if velocity.rapidity() == 0.0 && view.elongation() == 1.0 {
+        // All triangles at rest have the same bound.
+        return (0..count.min(1)).map(exact).fold(0.0, f64::max);
+    }
     if !(velocity.rapidity() > SLOW) || view.elongation() != 1.0 {
         return (0..count)
             .into_par_iter()

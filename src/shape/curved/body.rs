@@ -108,6 +108,12 @@ impl Shape {
         !self.has_resolution() && !self.pieces(false).is_empty()
     }
 
+    /// The largest distance of a place of a round shape from the origin of its own frame, or somewhat more.
+    pub(crate) fn reach(&self) -> f64 {
+        let pieces = self.pieces(false).into_iter();
+        pieces.map(|piece| piece.reach()).fold(0.0, f64::max) * (1.0 + 1e-12)
+    }
+
     /// The number of triangles of the coarsest body of a round shape.
     pub(crate) fn coarsest_curved(&self) -> usize {
         let pieces = self.pieces(false);

@@ -225,6 +225,18 @@ impl Piece {
         }
     }
 
+    /// The largest distance of a place from the origin.
+    pub(crate) fn reach(&self) -> f64 {
+        match *self {
+            Self::Ball { radius } | Self::Globe { radius } => radius,
+            Self::Tube { major, minor } => major + minor,
+            Self::Side { radius, height } | Self::Slope { radius, height } => {
+                radius.hypot(0.5 * height)
+            }
+            Self::Lid { radius, height, .. } => radius.hypot(height),
+        }
+    }
+
     /// The curvatures of the surface at a place with this normal, in the directions of the turn and of the profile, where
     /// those away from the normal count as positive.
     pub(crate) fn curvatures(&self, place: DVec3, normal: DVec3) -> [f64; 2] {

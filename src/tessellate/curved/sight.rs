@@ -58,8 +58,14 @@ impl Sight {
         }
     }
 
+    /// Whether the observers of two sights differ in nothing but their places.
+    pub(super) fn differs_in_place_only(&self, other: &Self) -> bool {
+        self.to_offset.matrix3 == other.to_offset.matrix3
+            && (self.motion, self.gamma_beta) == (other.motion, other.gamma_beta)
+    }
+
     /// The same view with a tolerance that is `factor` times as large.
-    pub(super) fn loosened(&self, factor: f64) -> Self {
+    pub(crate) fn loosened(&self, factor: f64) -> Self {
         Self {
             allowed: self.allowed.times(factor),
             ..self.clone()
@@ -72,7 +78,7 @@ impl Sight {
     }
 
     /// A vector of the shape's own frame in the rest frame.
-    pub(super) fn at_rest(&self, vector: DVec3) -> DVec3 {
+    pub(crate) fn at_rest(&self, vector: DVec3) -> DVec3 {
         self.to_offset.matrix3 * vector
     }
 

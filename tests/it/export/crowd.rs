@@ -1,14 +1,20 @@
-//! Scenes of many objects: each is as it is alone, what is alike is there once, in little memory, on any number of threads.
+//! Scenes of many objects: each flat one is as it is alone, round ones share meshes, what is alike is there once, in little
+//! memory, on any number of threads.
 
+use std::collections::HashSet;
 use std::fs;
 use std::path::Path;
 
 use photosurface::{
-    ExportSettings, Photosurface, PlacedScene, Scene, SurfaceOptions, export, load_models,
+    DVec3, ExportSettings, Photosurface, PlacedScene, Scene, Source, SurfaceOptions, export,
+    load_models,
 };
 use serde_json::{Value, json};
 
+use crate::common::Random;
+use crate::common::curve::on_curve;
 use crate::common::glb::{Glb, index};
+use crate::common::refining::distance_to_mesh;
 
 /// An object on a field below the observer and ahead; nearer ones need more triangles.
 fn object(k: usize, source: Value) -> Value {
@@ -69,7 +75,7 @@ fn exported(placed: &PlacedScene) -> Vec<u8> {
     fs::read(path).unwrap()
 }
 
-/// Each object of a crowd is made as if there were no other.
+/// Each flat object of a crowd is made as if there were no other.
 #[test]
 fn an_object_in_a_crowd_is_as_it_is_alone() {
     let together = surfaces(&crowd(160, mixed), true);
@@ -96,10 +102,96 @@ fn facts(surface: &Photosurface) -> Value {
 fn threads_make_no_difference_to_a_crowd() {
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.unwrap().install(|| exported(&crowd(160, mixed)))
+        pool.unwrap().install(|| {
+            let mut objects: Vec<Value> = (0..160).map(|k| object(k, mixed(k))).collect();
+            objects.extend((0..40).map(far_away));
+            exported(&placed(objects))
+        })
     };
     let [one, two, five] = [1, 2, 5].map(with);
     assert!(one == two && one == five);
+}
+
+/// Balls and rings in a field far ahead: many are seen in nearly the same direction.
+fn far_away(k: usize) -> Value {
+    let (x, z) = ((k % 8) as f64, (k / 8) as f64);
+    let shape = match k % 2 {
+        0 => json!({ "sphere": { "radius": 0.5 } }),
+        _ => json!({ "torus": { "major_radius": 0.4, "minor_radius": 0.15 } }),
+    };
+    json!({ "name": format!("far{k}"), "shape": shape, "scale": [1, 0.8, 1.1],
+            "position": [1.5 * x - 6.0, -1.2 + 0.1 * z, -1.5 * z - 60.0] })
+}
+
+/// Round objects of one shape that are seen in nearly the same direction share a mesh. What is proven of it for one holds for
+/// all, with few triangles more than each would have alone.
+#[test]
+fn round_objects_seen_in_one_direction_share_a_mesh_that_is_proven_for_each() {
+    let objects: Vec<Value> = (0..64).map(far_away).collect();
+    let of_crowd = surfaces(&placed(objects.clone()), true);
+    let mut random = Random::new(5);
+    let mut shared = 0;
+    let meshes: Vec<_> = of_crowd
+        .iter()
+        .map(|surface| surface.mesh.triangles())
+        .collect();
+    for (k, surface) in of_crowd.iter().enumerate() {
+        let certificate = &surface.facts.certificate;
+        assert!(certificate.complete && certificate.curvature == 0.0, "{k}");
+        let alike = meshes.iter().filter(|mesh| **mesh == meshes[k]).count();
+        shared += usize::from(alike >= 4);
+        let scene = placed(vec![objects[k].clone()]);
+        let (object, _) = scene.objects().next().unwrap();
+        let view = scene.view(object, 0).unwrap();
+        let to_rest = object.model_to_rest();
+        let seen = |place: DVec3| view.seen_position(to_rest.transform_point3(place));
+        let Source::Shape(shape, _) = &object.source else {
+            panic!("all have shapes");
+        };
+        // Corners are on the photosurface, and no place of it is far from the mesh.
+        for _ in 0..40 {
+            let distance = distance_to_mesh(seen(on_curve(shape, &mut random)), &surface.mesh);
+            assert!(
+                distance <= certificate.total * (1.0 + 1e-9),
+                "{k}: {distance:e} {certificate:?}"
+            );
+        }
+        if k % 8 == 0 {
+            let alone = &surfaces(&scene, true)[0];
+            let ratio = surface.facts.triangles as f64 / alone.facts.triangles as f64;
+            assert!((1.0..1.25).contains(&ratio), "{k}: {ratio}");
+        }
+    }
+    assert!(shared >= 48, "{shared} of 64");
+}
+
+/// In a file such objects have their indices and texture coordinates once.
+#[test]
+fn what_round_objects_share_is_in_the_file_once() {
+    let glb = Glb::new(&exported(&placed((0..64).map(far_away).collect())));
+    let primitives = glb.json["meshes"].as_array().unwrap().iter();
+    let indices: HashSet<usize> = primitives
+        .map(|mesh| index(&mesh["primitives"][0]["indices"]))
+        .collect();
+    assert!(indices.len() <= 12, "{}", indices.len());
+}
+
+/// A few objects, and those whose tolerance is an angle, are as they are alone.
+#[test]
+fn few_round_objects_are_as_they_are_alone() {
+    let few = (0..64).filter(|k| k % 11 == 0).map(far_away).collect();
+    let of_angles = (0..16).map(|k| {
+        let mut object = far_away(k);
+        object["tolerance"] = json!({ "angle_deg": 0.01 });
+        object
+    });
+    for objects in [few, of_angles.collect::<Vec<_>>()] {
+        for (object, surface) in objects.iter().zip(surfaces(&placed(objects.clone()), true)) {
+            let alone = &surfaces(&placed(vec![object.clone()]), true)[0];
+            assert_eq!(facts(alone), facts(&surface));
+            assert!(alone.mesh == surface.mesh);
+        }
+    }
 }
 
 /// A tolerance that is a part of the size is a part of the size of the whole photosurface: that of a flat shape bends
