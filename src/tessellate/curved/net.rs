@@ -359,10 +359,11 @@ impl<'a> Net<'a> {
         self.area(&self.task.pieces[piece as usize], corners)
     }
 
-    /// Whether three spots of a piece make a triangle that faces outwards and spans no more than a quarter of a turn.
+    /// Whether three spots of a piece make a triangle that faces outwards, is no line, and spans no more than a quarter of a
+    /// turn.
     pub(super) fn faces_outwards(&self, corners: [Placed<'_>; 3], piece: u8) -> bool {
         let piece = &self.task.pieces[piece as usize];
-        if !(self.area(piece, corners) > 0.0) {
+        if !(self.area(piece, corners) > 0.0) || is_line(corners.map(|(_, place)| place)) {
             return false;
         }
         let spots = corners.map(|(spot, _)| spot);
@@ -404,4 +405,16 @@ impl<'a> Net<'a> {
                 normals.iter().all(|n| n.dot(normal) > LEAST_COSINE)
             })
     }
+}
+
+/// Whether a triangle is so thin that rounding decides where it faces.
+fn is_line([a, b, c]: [DVec3; 3]) -> bool {
+    /// How high a triangle is at least, as a fraction of its longest side.
+    const LEAST_HEIGHT: f64 = 1e-8;
+    let sides = [b - a, c - b, a - c];
+    let longest = sides
+        .map(DVec3::length_squared)
+        .into_iter()
+        .fold(0.0, f64::max);
+    !(sides[0].cross(sides[1]).length_squared() > (LEAST_HEIGHT * longest).powi(2))
 }

@@ -283,7 +283,7 @@ mod tests {
         }
     }
 
-    /// The sides of triangles, by the bits of their ends: each is there once each way.
+    /// The sides of triangles, by the bits of their ends: each is there once each way. And no triangle is a line.
     fn assert_closed(mesh: &Mesh, case: &str) {
         let positions = mesh.positions();
         let bits = |corner: u32| positions[corner as usize].to_array().map(f64::to_bits);
@@ -292,6 +292,10 @@ mod tests {
             for (from, to) in [(a, b), (b, c), (c, a)] {
                 assert!(sides.insert((bits(from), bits(to))), "{case}");
             }
+            let [a, b, c] = [a, b, c].map(|corner| positions[corner as usize]);
+            let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+            let height = (b - a).cross(c - a).length() / longest;
+            assert!(height > 1e-9 * longest, "{case}: {a} {b} {c}");
         }
         assert!(
             sides.iter().all(|&(from, to)| sides.contains(&(to, from))),
@@ -335,6 +339,25 @@ mod tests {
             assert!((2.5..4.2).contains(&volume), "{case}: {volume}");
         }
         assert!(proven > 60, "{proven}");
+    }
+
+    /// Sides of triangles lie on rulings, where three corners may be on one.
+    #[test]
+    fn no_triangle_of_a_rod_is_a_line() {
+        let shape = Shape::rod(4.0, 0.15).unwrap();
+        let velocity = Velocity::from_beta(0.9, DVec3::Y).unwrap();
+        let mut proven = 0;
+        for k in 0..240 {
+            let along = f64::from(k) * 0.05 - 6.0;
+            let to_offset = DAffine3::from_translation(DVec3::new(-2.5, along, -8.0));
+            let tolerance = [9.8e-3, 5e-3, 1.5e-2][k as usize % 3];
+            let sight = Sight::new(&velocity, to_offset, Allowed::Length(tolerance));
+            if let Some(made) = triangulate(&shape, &[sight], About::Surface, u64::MAX) {
+                assert_closed(&made.mesh, &format!("{k}"));
+                proven += 1;
+            }
+        }
+        assert!(proven > 200, "{proven}");
     }
 
     /// Closed, and with all triangles facing outwards, for shapes with seams, poles, tips and rims.
