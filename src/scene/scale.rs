@@ -13,7 +13,23 @@ use crate::shape::{Length, ShapeError};
 /// Stretches along the three axes: one factor for all, or one for each.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
 #[schemars(with = "ScaleForm")]
-pub struct Scale([Length; 3]);
+pub struct Scale([Factor; 3]);
+
+/// A finite factor greater than zero.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "f64")]
+struct Factor(f64);
+
+impl TryFrom<f64> for Factor {
+    type Error = ShapeError;
+
+    fn try_from(value: f64) -> Result<Self, ShapeError> {
+        match value > 0.0 && value.is_finite() {
+            true => Ok(Self(value)),
+            false => Err(ShapeError::Factor { value }),
+        }
+    }
+}
 
 #[derive(JsonSchema)]
 #[serde(untagged)]
@@ -32,7 +48,7 @@ impl Scale {
     ///
     /// A factor that is not finite and positive.
     pub fn new(factors: DVec3) -> Result<Self, ShapeError> {
-        let [x, y, z] = factors.to_array().map(Length::new);
+        let [x, y, z] = factors.to_array().map(Factor::try_from);
         Ok(Self([x?, y?, z?]))
     }
 
@@ -47,7 +63,7 @@ impl Scale {
 
     /// The factors.
     pub fn get(self) -> DVec3 {
-        self.0.map(Length::get).into()
+        self.0.map(|Factor(factor)| factor).into()
     }
 
     /// The largest factor: nothing is stretched more.
@@ -59,7 +75,7 @@ impl Scale {
 impl Default for Scale {
     /// As it is.
     fn default() -> Self {
-        Self([Length::ONE; 3])
+        Self([Factor(1.0); 3])
     }
 }
 
@@ -111,5 +127,12 @@ mod tests {
         assert_eq!(scale.get(), DVec3::new(5e-324, 2.0, 1.0));
         assert_eq!(scale.largest(), 2.0);
         assert_eq!(Scale::default(), Scale::uniform(1.0).unwrap());
+        let error = serde_json::from_str::<Scale>("[1, -1, 1]")
+            .unwrap_err()
+            .to_string();
+        assert!(
+            error.starts_with("factor is -1, expected a finite factor > 0"),
+            "{error}"
+        );
     }
 }

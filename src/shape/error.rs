@@ -16,6 +16,12 @@ pub enum ShapeError {
         /// Its value.
         value: f64,
     },
+    /// A factor that is none.
+    #[error("factor is {value}, expected a finite factor > 0")]
+    Factor {
+        /// Its value.
+        value: f64,
+    },
     /// A count out of range.
     #[error("{name} is {value}, expected a whole number from {least} to {most}")]
     Count {

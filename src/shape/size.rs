@@ -15,9 +15,6 @@ use super::ShapeError;
 pub struct Length(f64);
 
 impl Length {
-    /// One unit.
-    pub(crate) const ONE: Self = Self(1.0);
-
     /// The length `value`.
     ///
     /// # Errors

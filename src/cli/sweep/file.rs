@@ -9,6 +9,7 @@ use photosurface::jobs::{MAX_SCENE_BYTES, text_of};
 use photosurface::read::read_whole;
 use serde_json::{Map, Value, json};
 
+use super::unique::Unique;
 use crate::cli::export::ExportArgs;
 use crate::cli::output::is_stdout;
 use crate::cli::render::RenderArgs;
@@ -58,7 +59,7 @@ pub(super) fn configurations(
         false => read_whole(path, MAX_SCENE_BYTES)?,
     };
     let text = text_of(&bytes).with_context(|| place.clone())?;
-    let value = serde_json::from_str(text).with_context(|| place.clone())?;
+    let Unique(value) = serde_json::from_str(text).with_context(|| place.clone())?;
     of_json(value, common).with_context(|| place)
 }
 
@@ -117,8 +118,14 @@ fn of_json(value: Value, common: &Common<'_>) -> anyhow::Result<Vec<Configuratio
         );
         let mut flags = all.clone();
         flags.extend(run);
-        let command = configured(&command, input.as_deref(), &name, flags, common)
-            .with_context(|| format!("runs[{number}] \"{name}\""))?;
+        let command =
+            configured(&command, input.as_deref(), &name, flags, common).map_err(|error| {
+                let of_all = configured(&command, input.as_deref(), &name, all.clone(), common);
+                match of_all.err() {
+                    Some(of_all) if of_all.to_string() == error.to_string() => error.context("all"),
+                    _ => error.context(format!("runs[{number}] \"{name}\"")),
+                }
+            })?;
         for file in command.files() {
             if let Some(other) = files.insert(file.to_owned(), name.clone()) {
                 bail!(
@@ -394,6 +401,14 @@ mod tests {
                 vec!["runs[0]", "\"beta\" is true", "expected a value"],
             ),
             (json!([{ "plan": true }]), vec!["\"plan\"", "command line"]),
+            (
+                json!({ "all": { "beta": "fast" }, "runs": [{}, {}] }),
+                vec!["all: ", "fast"],
+            ),
+            (
+                json!({ "all": { "beta": 0.5 }, "runs": [{ "beta": "fast" }] }),
+                vec!["runs[0]", "fast"],
+            ),
         ] {
             let error = read(value.clone()).err().map(|error| format!("{error:#}"));
             let error = error.unwrap_or_else(|| panic!("{value} is accepted"));

@@ -3,6 +3,7 @@
 mod file;
 mod rows;
 mod run;
+mod unique;
 
 pub(super) use file::json_schema;
 pub(super) use run::{SweepArgs, run};

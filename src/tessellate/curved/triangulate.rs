@@ -21,10 +21,10 @@ const REPAIRS: usize = 40;
 const MOST_TIMES: usize = 3;
 const FEW: usize = 1_000;
 
-/// How many looks at places each proof may take, and some that do not count. Most take 10 to 40; small meshes with tips take
+/// How many looks at places each proof may take, and some that do not count. Most take 6 to 15; small meshes with tips take
 /// most.
-const LOOKS: u64 = 100;
-const SOME_LOOKS: u64 = 60_000;
+const LOOKS: u64 = 40;
+const SOME_LOOKS: u64 = 25_000;
 
 /// If there are more triangles than there may be, the tolerance is multiplied by a factor, at least by this one; after a few
 /// times the least factor is squared each time.
