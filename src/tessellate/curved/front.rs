@@ -16,7 +16,7 @@ use crate::shape::Spot;
 const AIM: f64 = 0.95;
 
 /// The least distance of a new vertex from others, in wanted lengths: one that makes a triangle, one in the middle of a
-/// circle, and any from a rim.
+/// circle or of a long side, and any from a rim.
 const CLOSE: f64 = 0.7;
 const CLOSE_AT_CENTER: f64 = 0.5;
 const CLOSE_TO_RIM: f64 = 0.45;
@@ -114,14 +114,20 @@ impl Net<'_> {
     /// A place for a new vertex that makes a triangle smaller, and the triangle that it is in.
     fn place_for_vertex(&self, triangle: usize) -> Option<(usize, Spot)> {
         let (length, half_edge) = self.shortest(triangle);
-        let longest = [0, 1, 2].map(|k| self.length_of((3 * triangle + k) as u32));
-        let longest = longest.into_iter().fold(0.0, f64::max);
-        if longest <= KNOWN_LENGTH * AIM && self.estimates[triangle].whole >= KNOWN {
+        let sides = [half_edge, next(half_edge), previous(half_edge)];
+        let lengths = sides.map(|side| self.length_of(side));
+        let longest = (0..3).fold(0, |k, other| {
+            if lengths[other] > lengths[k] {
+                other
+            } else {
+                k
+            }
+        });
+        if lengths[longest] <= KNOWN_LENGTH * AIM && self.estimates[triangle].whole >= KNOWN {
             return None;
         }
         let side = Task::side_of(self.of[triangle]);
-        let corners = [half_edge, next(half_edge), previous(half_edge)]
-            .map(|e| &self.vertices[self.start(e) as usize]);
+        let corners = sides.map(|e| &self.vertices[self.start(e) as usize]);
         let [a, b, c] = corners.map(|vertex| vertex.place);
         let metrics = corners.map(|vertex| vertex.metric[side]);
         let along = b - a;
@@ -144,10 +150,14 @@ impl Net<'_> {
         let (uu, uv, vv) = (u.dot(metric * u), u.dot(metric * v), v.dot(metric * v));
         let center =
             a + (u * (vv * (uu - uv)) + v * (uu * (vv - uv))) / (2.0 * (uu * vv - uv * uv));
+        // In a long triangle both may be beside others, or on another one.
+        let ends = [[a, b], [b, c], [c, a]][longest];
+        let middle = (lengths[longest] > LONG * AIM).then_some(0.5 * (ends[0] + ends[1]));
         let places = on_edge
             .map(|place| (place, CLOSE))
             .into_iter()
-            .chain([(center, CLOSE_AT_CENTER)]);
+            .chain([(center, CLOSE_AT_CENTER)])
+            .chain(middle.map(|place| (place, CLOSE_AT_CENTER)));
         places
             .filter(|(place, _)| place.is_finite())
             .find_map(|(place, close)| self.room_at(triangle, place, close * AIM, a))
