@@ -11,10 +11,6 @@ use glam::DVec3;
 use super::net::{Net, Placed, Task, half_edges_of, next, previous, triangle_of};
 use crate::shape::Spot;
 
-/// The wanted length of sides, in the metric in which an equilateral triangle of length 1 is as far from the photosurface
-/// as is allowed.
-const AIM: f64 = 0.95;
-
 /// The least distance of a new vertex from others, in wanted lengths: one that makes a triangle, one in the middle of a
 /// circle or of a long side, and any from a rim.
 const CLOSE: f64 = 0.7;
@@ -90,7 +86,10 @@ impl Net<'_> {
     }
 
     fn turn_of(&self, triangle: usize) -> Turn {
-        Turn(-(self.shortest(triangle).0 / AIM).ln().abs(), triangle)
+        Turn(
+            -(self.shortest(triangle).0 / self.task.side).ln().abs(),
+            triangle,
+        )
     }
 
     /// The length of the shortest side, and its half-edge.
@@ -123,7 +122,9 @@ impl Net<'_> {
                 k
             }
         });
-        if lengths[longest] <= KNOWN_LENGTH * AIM && self.estimates[triangle].whole >= KNOWN {
+        if lengths[longest] <= KNOWN_LENGTH * self.task.side
+            && self.estimates[triangle].whole >= KNOWN
+        {
             return None;
         }
         let side = Task::side_of(self.of[triangle]);
@@ -131,17 +132,17 @@ impl Net<'_> {
         let [a, b, c] = corners.map(|vertex| vertex.place);
         let metrics = corners.map(|vertex| vertex.metric[side]);
         let along = b - a;
-        let on_edge = if length < SHORT * AIM {
+        let on_edge = if length < SHORT * self.task.side {
             let metric = metrics[0] + metrics[1];
             let across = c - 0.5 * (a + b);
             let across = across - along * (along.dot(metric * across) / along.dot(metric * along));
-            let height = (AIM * AIM - 0.25 * length * length)
-                .max(0.25 * AIM * AIM)
+            let height = (self.task.side * self.task.side - 0.25 * length * length)
+                .max(0.25 * self.task.side * self.task.side)
                 .sqrt();
             let size = (0.5 * across.dot(metric * across)).sqrt();
             Some(0.5 * (a + b) + across * (height / size).min(2.0))
-        } else if length > LONG * AIM {
-            Some(a + along * (AIM / length) + 0.02 * (c - 0.5 * (a + b)))
+        } else if length > LONG * self.task.side {
+            Some(a + along * (self.task.side / length) + 0.02 * (c - 0.5 * (a + b)))
         } else {
             None
         };
@@ -152,7 +153,8 @@ impl Net<'_> {
             a + (u * (vv * (uu - uv)) + v * (uu * (vv - uv))) / (2.0 * (uu * vv - uv * uv));
         // In a long triangle both may be beside others, or on another one.
         let ends = [[a, b], [b, c], [c, a]][longest];
-        let middle = (lengths[longest] > LONG * AIM).then_some(0.5 * (ends[0] + ends[1]));
+        let middle =
+            (lengths[longest] > LONG * self.task.side).then_some(0.5 * (ends[0] + ends[1]));
         let places = on_edge
             .map(|place| (place, CLOSE))
             .into_iter()
@@ -160,7 +162,7 @@ impl Net<'_> {
             .chain(middle.map(|place| (place, CLOSE_AT_CENTER)));
         places
             .filter(|(place, _)| place.is_finite())
-            .find_map(|(place, close)| self.room_at(triangle, place, close * AIM, a))
+            .find_map(|(place, close)| self.room_at(triangle, place, close * self.task.side, a))
     }
 
     /// The spot next to a place and the triangle that it is in, if no other vertex is closer. Distances are those of the
@@ -207,7 +209,8 @@ impl Net<'_> {
             let along = to - from;
             let part = along.dot(metric * (place - from)) / along.dot(metric * along);
             self.is_rim(half_edge)
-                && length(from + along * part.clamp(0.0, 1.0) - place) < CLOSE_TO_RIM * AIM
+                && length(from + along * part.clamp(0.0, 1.0) - place)
+                    < CLOSE_TO_RIM * self.task.side
         });
         (!beside_rim).then_some((home, spot))
     }
