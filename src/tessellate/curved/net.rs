@@ -362,14 +362,19 @@ impl<'a> Net<'a> {
         self.area(&self.task.pieces[piece as usize], corners)
     }
 
-    /// Whether three spots of a piece make a triangle that faces outwards, is no line, and spans no more than a quarter of a
-    /// turn.
+    /// Whether three spots of a piece make a triangle that faces outwards, is no line, neither as it is nor in the parameters of a
+    /// cone where these matter, and spans no more than a quarter of a turn.
     pub(super) fn faces_outwards(&self, corners: [Placed<'_>; 3], piece: u8) -> bool {
         let piece = &self.task.pieces[piece as usize];
         if !(self.area(piece, corners) > 0.0) || is_line(corners.map(|(_, place)| place)) {
             return false;
         }
         let spots = corners.map(|(spot, _)| spot);
+        let has_parameters =
+            matches!(piece, Piece::Slope { .. }) && self.task.about == About::Points;
+        if has_parameters && spots.into_iter().all(|spot| spot.rim > 0) {
+            return false;
+        }
         let periods = piece.periods();
         (0..3).all(|k| {
             let (a, b) = (spots[k], spots[(k + 1) % 3]);

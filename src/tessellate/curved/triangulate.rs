@@ -413,6 +413,19 @@ mod tests {
         assert!(proven > 200, "{proven}");
     }
 
+    /// In the parameters of a cone nothing is between three spots of its rim, though there is a triangle.
+    #[test]
+    fn points_of_cones_are_proven_for_a_fast_observer() {
+        let shape = Shape::cone(1.0, 2.0).unwrap();
+        let velocity = Velocity::from_beta(0.999, DVec3::X).unwrap();
+        let to_offset = DAffine3::from_translation(-2.0 * DVec3::X);
+        for tolerance in [1.038_953_967_073_561_4e-3, 1.142_849_363_780_917_5e-3] {
+            let sight = Sight::new(&velocity, to_offset, Allowed::Length(tolerance));
+            let made = triangulate(&shape, &[sight], About::Points, u64::MAX);
+            assert!(made.is_some(), "{tolerance}");
+        }
+    }
+
     /// Closed, and with all triangles facing outwards, for shapes with seams, poles, tips and rims.
     #[test]
     fn triangulations_are_closed() {
