@@ -87,7 +87,7 @@ impl Net<'_> {
 
     fn turn_of(&self, triangle: usize) -> Turn {
         Turn(
-            -(self.shortest(triangle).0 / self.task.side).ln().abs(),
+            -(self.shortest(triangle).0 / self.task.aim).ln().abs(),
             triangle,
         )
     }
@@ -122,7 +122,7 @@ impl Net<'_> {
                 k
             }
         });
-        if lengths[longest] <= KNOWN_LENGTH * self.task.side
+        if lengths[longest] <= KNOWN_LENGTH * self.task.aim
             && self.estimates[triangle].whole >= KNOWN
         {
             return None;
@@ -132,17 +132,17 @@ impl Net<'_> {
         let [a, b, c] = corners.map(|vertex| vertex.place);
         let metrics = corners.map(|vertex| vertex.metric[side]);
         let along = b - a;
-        let on_edge = if length < SHORT * self.task.side {
+        let on_edge = if length < SHORT * self.task.aim {
             let metric = metrics[0] + metrics[1];
             let across = c - 0.5 * (a + b);
             let across = across - along * (along.dot(metric * across) / along.dot(metric * along));
-            let height = (self.task.side * self.task.side - 0.25 * length * length)
-                .max(0.25 * self.task.side * self.task.side)
+            let height = (self.task.aim * self.task.aim - 0.25 * length * length)
+                .max(0.25 * self.task.aim * self.task.aim)
                 .sqrt();
             let size = (0.5 * across.dot(metric * across)).sqrt();
             Some(0.5 * (a + b) + across * (height / size).min(2.0))
-        } else if length > LONG * self.task.side {
-            Some(a + along * (self.task.side / length) + 0.02 * (c - 0.5 * (a + b)))
+        } else if length > LONG * self.task.aim {
+            Some(a + along * (self.task.aim / length) + 0.02 * (c - 0.5 * (a + b)))
         } else {
             None
         };
@@ -153,8 +153,7 @@ impl Net<'_> {
             a + (u * (vv * (uu - uv)) + v * (uu * (vv - uv))) / (2.0 * (uu * vv - uv * uv));
         // In a long triangle both may be beside others, or on another one.
         let ends = [[a, b], [b, c], [c, a]][longest];
-        let middle =
-            (lengths[longest] > LONG * self.task.side).then_some(0.5 * (ends[0] + ends[1]));
+        let middle = (lengths[longest] > LONG * self.task.aim).then_some(0.5 * (ends[0] + ends[1]));
         let places = on_edge
             .map(|place| (place, CLOSE))
             .into_iter()
@@ -162,7 +161,7 @@ impl Net<'_> {
             .chain(middle.map(|place| (place, CLOSE_AT_CENTER)));
         places
             .filter(|(place, _)| place.is_finite())
-            .find_map(|(place, close)| self.room_at(triangle, place, close * self.task.side, a))
+            .find_map(|(place, close)| self.room_at(triangle, place, close * self.task.aim, a))
     }
 
     /// The spot next to a place and the triangle that it is in, if no other vertex is closer. Distances are those of the
@@ -210,7 +209,7 @@ impl Net<'_> {
             let part = along.dot(metric * (place - from)) / along.dot(metric * along);
             self.is_rim(half_edge)
                 && length(from + along * part.clamp(0.0, 1.0) - place)
-                    < CLOSE_TO_RIM * self.task.side
+                    < CLOSE_TO_RIM * self.task.aim
         });
         (!beside_rim).then_some((home, spot))
     }

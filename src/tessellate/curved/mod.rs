@@ -4,8 +4,8 @@
 //! starts with few of them, with `rims` divided already; a `front` adds vertices, `refine` divides what that has left and
 //! takes away and moves vertices. `chart` and `bent` describe the curved patch over a triangle; `patch` bounds its
 //! derivatives over a part of it, in the part's `frame`, along `steps` of the chart; `proof` bounds the distance of both,
-//! `bounds` does that for the triangles of a net. `triangulate` puts it together; `carried` takes bounds
-//! to other sights, and `minimum` says how many triangles are needed.
+//! `bounds` does that for the triangles of a net. `triangulate` puts it together; `carried` takes bounds to other
+//! sights, and `minimum` says how many triangles are needed.
 
 #![allow(
     clippy::needless_range_loop,

@@ -27,7 +27,7 @@ pub(super) struct Task<'a> {
     pub(super) about: About,
     /// The wanted length of sides, in the metric in which an equilateral triangle of length 1 is as far from the
     /// photosurface as is allowed.
-    pub(super) side: f64,
+    pub(super) aim: f64,
 }
 
 /// A vertex, with what is computed once for it. On a rim normals and metrics are those of the first piece and of the lid.

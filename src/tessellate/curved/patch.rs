@@ -68,6 +68,7 @@ pub(super) struct Bend {
 }
 
 impl Patch {
+    /// The part of a triangle with these corners.
     pub(super) fn new(chart: &Bent, sight: &Sight, part: &[Corner; 3]) -> Self {
         let frame = Frame::new(part.map(|corner| corner.at));
         let look = chart.look(&frame);

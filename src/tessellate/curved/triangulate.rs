@@ -21,10 +21,10 @@ const REPAIRS: usize = 40;
 const MOST_TIMES: usize = 3;
 const FEW: usize = 1_000;
 
-/// The wanted lengths of sides, as [`Task::side`]. Where a photosurface bends in all directions, a triangle that is divided may
+/// The wanted lengths of sides, as [`Task::aim`]. Where a photosurface bends in all directions, a triangle that is divided may
 /// fold those beside it, and these, divided, others. A front whose sides have another length meets other triangles there. The
 /// next length is tried where more than so many per cent of the triangles of the front are there after dividing.
-const SIDES: [f64; 3] = [0.95, 0.93, 0.91];
+const AIMS: [f64; 3] = [0.95, 0.93, 0.91];
 const CALM: usize = 115;
 
 /// How many looks at places each proof may take, and some that do not count. Most take 6 to 15; small meshes with tips take
@@ -65,7 +65,7 @@ pub(crate) fn triangulate(
             pieces: &pieces,
             sights: &aimed,
             about,
-            side: SIDES[0],
+            aim: AIMS[0],
         };
         match within(task, most) {
             Ok(made) => return made.map(|(net, bounds)| assembled(shape, &net, bounds)),
@@ -89,18 +89,11 @@ fn within(task: Task<'_>, most: usize) -> Result<Option<(Net<'_>, BoundsOf)>, us
     // A little more may be taken away again.
     let limit = most.saturating_add(most / 4).max(is_coarsest);
     let mut grown = Grown::new(&body, task, limit);
-    for side in &SIDES[1..] {
+    for &aim in &AIMS[1..] {
         if grown.is_calm() {
             break;
         }
-        let other = Grown::new(
-            &body,
-            Task {
-                side: *side,
-                ..task
-            },
-            limit,
-        );
+        let other = Grown::new(&body, Task { aim, ..task }, limit);
         if other.net.count() < grown.net.count() {
             grown = other;
         }
