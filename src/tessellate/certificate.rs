@@ -236,15 +236,20 @@ impl Certificate {
         counts: Counts,
     ) -> Self {
         let of_each = bounds.par_iter().enumerate().map(|(index, bounds)| {
-            let nearest = nearest_point(seen.corners_of(index)).length() * (1.0 - 1e-12);
-            let angle = |length: f64| angle_of(length, nearest - length - rounding);
             let [of_surface, of_points] = *bounds;
             let measured = match measure {
                 Measure::Points => of_points,
                 Measure::Surface => of_surface,
             };
-            let total = angle_of(measured + rounding, nearest - measured - rounding);
-            [angle(of_points), angle(of_surface), angle(rounding), total]
+            let nearest = nearest_point(seen.corners_of(index)).length() * (1.0 - 1e-12);
+            // A place of the file is away from the photosurface by a gap and by its rounding.
+            let angle = |length: f64, gap: f64| angle_of(length, nearest - gap - rounding);
+            [
+                angle(of_points, of_points),
+                angle(of_surface, of_surface),
+                angle(rounding, measured),
+                angle(measured + rounding, measured),
+            ]
         });
         let larger = |a: [f64; 4], b: [f64; 4]| [0, 1, 2, 3].map(|k| a[k].max(b[k]));
         let [gap, surface_gap, rounding, total] = of_each.reduce(|| [0.0; 4], larger);
@@ -314,6 +319,41 @@ fn finite(number: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_part_of_seen_angles_is_larger_than_their_total() {
+        let corners = [DVec3::X, DVec3::Y, DVec3::Z];
+        let seen = Mesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+        let counts = Counts {
+            triangles_in: 1,
+            triangles_out: 1,
+            minimum_triangles: 1.0,
+            minimum_with_source: 1.0,
+        };
+        let lengths = [0.0, 1e-13, 1e-6, 0.01, 0.2, 0.3, 10.0];
+        for of_points in lengths {
+            for of_surface in lengths.into_iter().filter(|&length| length <= of_points) {
+                for rounding in lengths {
+                    for measure in [Measure::Points, Measure::Surface] {
+                        let certificate = Certificate::of_seen_angles(
+                            1.0,
+                            measure,
+                            &seen,
+                            &[[of_surface, of_points]],
+                            rounding,
+                            counts,
+                        );
+                        let parts = [certificate.measured_gap(), certificate.rounding];
+                        assert!(
+                            parts.iter().all(|&part| part <= certificate.total),
+                            "{certificate:?}"
+                        );
+                        assert!(certificate.surface_gap <= certificate.gap);
+                    }
+                }
+            }
+        }
+    }
 
     #[test]
     fn no_number_of_a_certificate_is_null() {
