@@ -6,6 +6,7 @@ use super::limits::{Limits, StepTolerance};
 use super::mapped_mesh::MappedMesh;
 use crate::mesh::Mesh;
 use crate::scene::Unit;
+use crate::spacetime::length;
 use crate::tessellate::{Bounds, Certificate, Counts, survey};
 
 /// The measured gap of a mesh, and its numbers of triangles.
@@ -98,9 +99,14 @@ pub(super) fn of_curved(
         }
         _ => {
             let largest = |k: usize| bounds.iter().map(|of| of[k]).fold(0.0, f64::max);
+            let surface_gap = largest(0);
+            // Where nothing else is known of points: all of the mesh is in the box around its vertices, and no place of
+            // the photosurface is farther than the other bound from it.
+            let across = seen.extremes.bounds().map(|(low, high)| length(high - low));
+            let across = across.map_or(f64::INFINITY, |across| across + 4.0 * surface_gap);
             let bounds = Bounds {
-                gap: largest(1),
-                surface_gap: largest(0),
+                gap: largest(1).min(across),
+                surface_gap,
                 deviation: 0.0,
                 curvature: 0.0,
                 rounding,

@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use glam::DAffine3;
 
 use super::certifying::of_curved;
-use super::limits::{MIN_GAP_SHARE, StepTolerance, bounds};
+use super::limits::{Aim, MIN_GAP_SHARE, StepTolerance, bounds};
 use super::making::Surface;
 use super::mapped_mesh::MappedMesh;
 use super::placed_object::{PlacedObject, Shaped};
@@ -15,7 +15,9 @@ use super::predicting::Predicted;
 use super::shared_mesh::SharedMesh;
 use crate::material::Part;
 use crate::mesh::Mesh;
-use crate::tessellate::{Allowed, Counts, Sight, Triangulated, needed, triangulate};
+use crate::tessellate::{
+    Allowed, Counts, Sight, Triangulated, needed, triangulate, triangulate_within,
+};
 
 /// Carries out the plan of a round shape, with the mesh of others if that is good enough; `None` if not every triangle could
 /// be proven.
@@ -23,14 +25,19 @@ pub(super) fn make_curved<'a>(plan: &Plan<'a>, shared: Option<&SharedMesh>) -> O
     let shaped = plan.placed_object.curved()?;
     let (name, placed) = &plan.placed_object.parts[0];
     let about = plan.tolerance.about();
-    let sight = sight_of(plan, shaped);
+    let sight = sight_of(plan, shaped, Aim::Scene);
     let most = plan.max_triangles(plan.granted);
     let fits = |made: &Triangulated| made.mesh.triangle_count() as u64 <= most;
     let shared = shared.and_then(|shared| shared.seen_by(&sight, about));
     let made = match shared.filter(fits) {
         Some(made) => made,
-        None => triangulate(&shaped.shape, std::slice::from_ref(&sight), about, most)?,
+        None => {
+            let sights = std::slice::from_ref(&sight);
+            made_for(std::slice::from_ref(plan), shaped, sights, most)?
+        }
     };
+    let itself = plan.itself.and_then(|itself| itself.shaped.as_ref());
+    let at_rest = itself.map(|itself| itself.part_of(made.mesh.clone(), placed).mesh().clone());
     let part = shaped.part_of(made.mesh, placed);
     let seen = MappedMesh::new(plan.view(), part.mesh());
     let around = plan.tolerance.box_around([&seen]);
@@ -46,6 +53,7 @@ pub(super) fn make_curved<'a>(plan: &Plan<'a>, shared: Option<&SharedMesh>) -> O
     Some(Surface {
         name: name.clone(),
         part: Cow::Owned(part),
+        at_rest,
         seen,
         around: around.unwrap_or_default(),
         certificate,
@@ -57,7 +65,7 @@ pub(super) fn make_curved<'a>(plan: &Plan<'a>, shared: Option<&SharedMesh>) -> O
 pub(super) fn shared_mesh(plan: &Plan<'_>, tightened: f64) -> Option<SharedMesh> {
     plan.as_curved?;
     let shaped = plan.placed_object.curved()?;
-    let sight = sight_of(plan, shaped).loosened(tightened);
+    let sight = sight_of(plan, shaped, Aim::Scene).loosened(tightened);
     SharedMesh::new(&shaped.shape, sight, plan.tolerance.about())
 }
 
@@ -69,7 +77,6 @@ pub(super) fn make_curved_together<'a>(
 ) -> Option<Vec<Surface<'a>>> {
     let shaped = placed_object.curved()?;
     let (name, placed) = &placed_object.parts[0];
-    let about = plans.first()?.tolerance.about();
     let most = placed_object
         .source_triangles
         .saturating_add(placed_object.granted_together());
@@ -97,11 +104,11 @@ pub(super) fn make_curved_together<'a>(
     let sights: Vec<Sight> = plans
         .iter()
         .map(|plan| match &plan.placed_object.shaped {
-            Some(stand_in) => sight_of(plan, stand_in),
-            None => sight_of(plan, shaped),
+            Some(stand_in) => sight_of(plan, stand_in, Aim::Scene),
+            None => sight_of(plan, shaped, Aim::Scene),
         })
         .collect();
-    let made = triangulate(&shaped.shape, &sights, about, most)?;
+    let made = made_for(plans, shaped, &sights, most)?;
     let part = shaped.part_of(made.mesh, placed);
     let after = shown(plans, &part);
     let around = set_box(plans, &after);
@@ -121,6 +128,7 @@ pub(super) fn make_curved_together<'a>(
             around: around.unwrap_or_default(),
             seen,
             part: Cow::Owned(stand_in),
+            at_rest: plan.itself.map(|_| part.mesh().clone()),
         }
     });
     Some(surfaces.collect())
@@ -129,7 +137,7 @@ pub(super) fn make_curved_together<'a>(
 /// About how many triangles a round shape takes as an exact surface; `None` of any other object.
 pub(super) fn predicted_of_curved(plan: &Plan<'_>) -> Option<f64> {
     let shaped = plan.placed_object.curved()?;
-    let sight = sight_of(plan, shaped);
+    let sight = sight_of(plan, shaped, Aim::Loosened);
     let needed = needed(&shaped.shape, &sight, plan.tolerance.about());
     Some(needed.predicted.max(shaped.shape.coarsest_curved() as f64))
 }
@@ -142,16 +150,42 @@ pub(super) fn predict_curved(plan: &Plan<'_>) -> Option<Predicted> {
     Some(Predicted {
         triangles,
         before: shaped.shape.coarsest_curved() as f64,
-        reachable: is_reachable(&plan.tolerance, &sight_of(plan, shaped), placed),
+        reachable: is_reachable(
+            &plan.tolerance,
+            &sight_of(plan, shaped, Aim::Loosened),
+            placed,
+        ),
     })
 }
 
-/// How the observer sees the shape, with the distance that rounding leaves of the tolerance aimed at.
-fn sight_of(plan: &Plan<'_>, shaped: &Shaped) -> Sight {
+/// The triangles of a round shape for the sights of these plans, at most `most` of them or those of its coarsest form: within
+/// the tolerance of the scene if so many are enough, otherwise within a looser one. `None` if nothing limits triangles and
+/// not every triangle could be proven.
+fn made_for(
+    plans: &[Plan<'_>],
+    shaped: &Shaped,
+    sights: &[Sight],
+    most: u64,
+) -> Option<Triangulated> {
+    let shape = &shaped.shape;
+    let about = plans.first()?.tolerance.about();
+    let made = triangulate(shape, sights, about, most);
+    match plans.iter().any(Plan::is_limited) {
+        false => made,
+        true => made.or_else(|| {
+            let loosening = plans.iter().map(Plan::loosening).fold(1.0, f64::max);
+            Some(triangulate_within(shape, sights, about, most, loosening))
+        }),
+    }
+}
+
+/// How the observer sees the shape, with the distance that rounding leaves of a tolerance.
+fn sight_of(plan: &Plan<'_>, shaped: &Shaped, aim: Aim) -> Sight {
     let tolerance = &plan.tolerance;
     let view = plan.view();
     let to_observer = DAffine3::from_translation(-view.observer_rest());
     let allowed = tolerance.allowed_of_curved(
+        aim,
         plan.placed_object.parts[0].1.mesh(),
         plan.extremes_as_placed(),
     );

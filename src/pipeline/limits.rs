@@ -81,6 +81,15 @@ pub(super) struct StepTolerance {
     pub(super) box_of_all_steps: Option<(DVec3, DVec3)>,
 }
 
+/// Which of two tolerances.
+#[derive(Clone, Copy)]
+pub(super) enum Aim {
+    /// That of the scene.
+    Scene,
+    /// A looser one where triangles are limited.
+    Loosened,
+}
+
 /// The division of a tolerance: one for all parts of an object, so that parts that share an edge divide it alike.
 #[derive(Clone, Copy)]
 pub(super) struct Limits {
@@ -302,18 +311,22 @@ impl StepTolerance {
         CURVATURE_SHARE * max_deviation
     }
 
-    /// How far the triangles of a round shape may be from its photosurface: what rounding leaves of the tolerance aimed at.
-    /// `mesh` is the shape as it was placed, with these extremes.
-    pub(super) fn allowed_of_curved(&self, mesh: &Mesh, seen: &Extremes) -> Allowed {
+    /// How far the triangles of a round shape may be from its photosurface: what rounding leaves of the tolerance of the
+    /// scene, or of the one aimed at. `mesh` is the shape as it was placed, with these extremes.
+    pub(super) fn allowed_of_curved(&self, aim: Aim, mesh: &Mesh, seen: &Extremes) -> Allowed {
+        let (tolerance, whole) = match aim {
+            Aim::Scene => (self.tolerance, self.length),
+            Aim::Loosened => (self.aimed, self.aimed_length),
+        };
         // The box around the exact shape is a little larger.
         let around = self.box_of_all_steps.or_else(|| seen.bounds());
         let rounding_in = |precision| 1.01 * self.rounding_in(precision, mesh, seen, around, 0.0);
         let of_singles = rounding_in(Precision::Single);
-        let rounding = match of_singles <= SHARED_ROUNDING * self.aimed_length {
+        let rounding = match of_singles <= SHARED_ROUNDING * whole {
             true => of_singles,
             false => rounding_in(self.precision),
         };
-        match (self.aimed.unit(), self.aimed.number()) {
+        match (tolerance.unit(), tolerance.number()) {
             (Unit::Degrees, degrees) => {
                 // (bound + rounding) / (distance - bound - rounding) <= s, solved for the bound.
                 let s = degrees.to_radians().sin();
@@ -324,8 +337,8 @@ impl StepTolerance {
                 }
             }
             _ => {
-                let left = self.aimed_length - rounding;
-                Allowed::Length(ROOM * left.max(MIN_GAP_SHARE * self.aimed_length))
+                let left = whole - rounding;
+                Allowed::Length(ROOM * left.max(MIN_GAP_SHARE * whole))
             }
         }
     }

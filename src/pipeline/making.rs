@@ -12,6 +12,7 @@ use super::limits::Limits;
 use super::mapped_mesh::MappedMesh;
 use super::plan::{Draft, Plan};
 use super::shared_mesh::SharedMesh;
+use super::standing_in::back_at_rest;
 use crate::material::Part;
 use crate::mesh::Mesh;
 use crate::tessellate::{Certificate, Counts, Refined, refine};
@@ -22,6 +23,8 @@ pub(super) struct Surface<'a> {
     pub(super) name: String,
     /// The part at rest; that of the placed scene where nothing was refined.
     pub(super) part: Cow<'a, Part>,
+    /// The mesh of the object itself where `part` is that of a stand-in and positions at rest are wanted.
+    pub(super) at_rest: Option<Mesh>,
     /// The part in the observer's frame.
     pub(super) seen: MappedMesh,
     /// Low and high corner, in the observer's frame, of the box around all parts of the object that share an offset in a
@@ -34,6 +37,7 @@ pub(super) struct Surface<'a> {
 struct Uncertified<'a> {
     name: String,
     part: Cow<'a, Part>,
+    at_rest: Option<Mesh>,
     seen: MappedMesh,
     measured: Measured,
 }
@@ -51,11 +55,16 @@ pub(super) fn make<'a>(
             None => plan.take_facets(wanted),
         }
     }
+    let at_rest = plan.drafts_of_itself();
     let Draft {
         parts,
         seen,
         limits,
     } = plan.draft();
+    let at_rest = match at_rest {
+        Some(meshes) => meshes.into_iter().map(Some).collect(),
+        None => vec![None; parts.len()],
+    };
     let refined = match plan.refines(wanted) {
         true => {
             let meshes: Vec<&Mesh> = parts.iter().map(|(_, part)| part.mesh()).collect();
@@ -66,10 +75,10 @@ pub(super) fn make<'a>(
     };
     let before = each_part(parts).into_par_iter().zip(seen);
     let made: Vec<Uncertified<'_>> = before
-        .zip(refined)
-        .map(|((named, seen), refined)| match refined {
-            Some(refined) => with_refined(&plan, named, seen, refined),
-            None => as_drafted(&plan, &limits, named, seen),
+        .zip(refined.into_par_iter().zip(at_rest))
+        .map(|((named, seen), (refined, at_rest))| match refined {
+            Some(refined) => with_refined(&plan, named, seen, refined, at_rest),
+            None => as_drafted(&plan, &limits, named, seen, at_rest),
         })
         .collect();
     // Refinement adds vertices beyond the box around the draft.
@@ -81,6 +90,7 @@ pub(super) fn make<'a>(
         Surface {
             name: made.name,
             part: made.part,
+            at_rest: made.at_rest,
             seen: made.seen,
             around: around.unwrap_or_default(),
             certificate,
@@ -115,11 +125,13 @@ fn as_drafted<'a>(
     limits: &Limits,
     (name, part): (String, Cow<'a, Part>),
     seen: MappedMesh,
+    at_rest: Option<Mesh>,
 ) -> Uncertified<'a> {
     Uncertified {
         measured: Measured::of_unrefined(&plan.tolerance, limits, part.mesh()),
         name,
         part,
+        at_rest,
         seen,
     }
 }
@@ -130,6 +142,7 @@ fn with_refined<'a>(
     (name, part): (String, Cow<'a, Part>),
     seen: MappedMesh,
     refined: Refined,
+    at_rest: Option<Mesh>,
 ) -> Uncertified<'a> {
     let mesh = part.mesh();
     let seen = if refined.mesh.vertex_count() == mesh.vertex_count() {
@@ -145,6 +158,7 @@ fn with_refined<'a>(
     };
     Uncertified {
         name,
+        at_rest: at_rest.map(|before| back_at_rest(&plan.shown, &before, refined.mesh.clone())),
         part: Cow::Owned(part.with_mesh(refined.mesh)),
         seen,
         measured: Measured {

@@ -28,6 +28,7 @@ mod sampler;
 mod seen_places;
 mod shared_mesh;
 mod side_by_side;
+mod standing_in;
 mod surface_options;
 mod together;
 mod vertex_data;

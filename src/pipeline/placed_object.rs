@@ -6,6 +6,7 @@ use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use super::sampler::Sampler;
+use super::standing_in::stretched;
 use crate::light_cone::{Extremes, ModelView, View};
 use crate::material::Part;
 use crate::mesh::Mesh;
@@ -236,17 +237,6 @@ impl Shaped {
             None => self.model_to_rest,
         }
     }
-}
-
-/// Parts in the frame of a stand-in, from those at rest.
-pub(super) fn stretched(
-    parts: &[(String, Part)],
-    rest_to_stand_in: &DAffine3,
-) -> Vec<(String, Part)> {
-    let parts = parts.iter();
-    parts
-        .map(|(name, part)| (name.clone(), part.clone().transformed(rest_to_stand_in)))
-        .collect()
 }
 
 pub(super) fn triangle_count(parts: &[(String, Part)]) -> u64 {

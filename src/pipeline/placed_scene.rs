@@ -425,7 +425,12 @@ impl PlacedScene {
         };
         Photosurface {
             facts,
-            vertex_data: VertexData::new(shown, surface.part.mesh(), wanted.attributes),
+            vertex_data: VertexData::new(
+                shown,
+                surface.part.mesh(),
+                surface.at_rest.as_ref(),
+                wanted.attributes,
+            ),
             material: surface.part.material.clone(),
             mesh: surface.seen.mesh,
             around: surface.around,

@@ -11,7 +11,8 @@ use super::mapped_mesh::MappedMesh;
 use super::placed_object::{PlacedObject, Shaped};
 use crate::light_cone::{Extremes, ModelView, View};
 use crate::material::Part;
-use crate::scene::{Measure, Tolerance, Unit};
+use crate::mesh::Mesh;
+use crate::scene::{Attribute, Measure, Tolerance, Unit};
 use crate::shape::Shape;
 use crate::tessellate::Allowance;
 
@@ -21,6 +22,8 @@ use crate::tessellate::Allowance;
 pub(super) struct Plan<'a> {
     /// What stands for the object under its model; the object itself where it is `seen`.
     pub(super) placed_object: Cow<'a, PlacedObject>,
+    /// The object itself where something else stands for it and positions at rest are wanted.
+    pub(super) itself: Option<&'a PlacedObject>,
     /// How the object is shown.
     pub(super) shown: ModelView,
     pub(super) tolerance: StepTolerance,
@@ -83,6 +86,9 @@ impl<'a> Plan<'a> {
         granted: u64,
         is_curved: bool,
     ) -> Self {
+        let wants_rest = wanted.attributes.contains(Attribute::RestPosition);
+        let itself = shown.rest_to_stand_in().filter(|_| wants_rest);
+        let itself = itself.map(|_| placed_object);
         let (placed_object, view) = placed_object.stand_in(&shown);
         let seen = seen_parts(&view, &placed_object.parts);
         // An absolute tolerance does not depend on how large the object is seen.
@@ -96,6 +102,7 @@ impl<'a> Plan<'a> {
             StepTolerance::new(&placed_object, view, tolerance, wanted.precision, &extremes);
         let mut plan = Self {
             placed_object,
+            itself,
             shown,
             tolerance,
             shape: None,
@@ -110,19 +117,37 @@ impl<'a> Plan<'a> {
         plan
     }
 
-    /// About how many triangles a round shape takes as an exact surface, if that is clearly fewer than facets of one resolution:
-    /// each takes about ten times as long.
+    /// About how many triangles a round shape takes as an exact surface, if it is to be one. As points it is: facets tell where
+    /// the surface is, not where its points are. Otherwise it is if that takes clearly fewer triangles, as each takes about ten
+    /// times as long, or if facets do not keep to the limit on triangles.
     fn worth_curving(&self) -> Option<f64> {
         /// Up to this fraction of the facets they are worth the time.
         const WORTH: f64 = 0.75;
         /// More would take minutes and gigabytes, mostly for a tolerance that no number of triangles reaches.
         const MOST: f64 = 4e6;
-        /// About so many facets tell how many there would be.
+        let predicted = predicted_of_curved(self)?;
+        let is_worth = self.tolerance.measure == Measure::Points
+            || self.is_limited()
+            || predicted <= WORTH * self.facets_needed() as f64;
+        (is_worth && predicted <= MOST).then_some(predicted)
+    }
+
+    /// Whether a round shape has to be coarser than its tolerance asks for, or has more facets than triangles are granted.
+    pub(super) fn is_limited(&self) -> bool {
+        self.loosening() > 1.0 || self.facets_needed() > self.max_triangles(self.granted)
+    }
+
+    /// About how many facets a shape takes.
+    fn facets_needed(&self) -> u64 {
+        /// So many facets as placed tell how many there would be.
         const LOOKS: usize = 500;
-        let facets = self
-            .facets(u64::MAX, LOOKS)
-            .map_or(0, |shape| shape.triangle_count());
-        predicted_of_curved(self).filter(|&predicted| predicted <= MOST.min(WORTH * facets as f64))
+        let facets = self.facets(u64::MAX, LOOKS);
+        facets.map_or(0, |shape| shape.triangle_count())
+    }
+
+    /// How many times as large as that of the scene the tolerance aimed at is.
+    pub(super) fn loosening(&self) -> f64 {
+        self.placed_object.loosening
     }
 
     /// Gives a shape, a round one too, facets of one resolution, as the tolerance asks for.
@@ -184,6 +209,20 @@ impl<'a> Plan<'a> {
             parts,
             allowance: limits.allowance,
         }
+    }
+
+    /// The meshes of all parts of the object itself before refinement, where something else stands for it and positions at
+    /// rest are wanted; a shape has its planned resolution.
+    pub(super) fn drafts_of_itself(&self) -> Option<Vec<Mesh>> {
+        let itself = self.itself?;
+        let meshes = |parts: &[(String, Part)]| {
+            let parts = parts.iter();
+            parts.map(|(_, part)| part.mesh().clone()).collect()
+        };
+        Some(match self.shape.as_ref().zip(itself.shaped.as_ref()) {
+            Some((shape, shaped)) => meshes(&shaped.parts_like(shape, &itself.parts)),
+            None => meshes(&itself.parts),
+        })
     }
 
     /// The parts before refinement; a shape has its planned resolution.

@@ -1,7 +1,7 @@
 //! A mesh of a round shape that is made for one observer and kept where it is good enough for others.
 
 use crate::shape::Shape;
-use crate::tessellate::{About, Allowed, Carried, Sight, Triangulated, triangulate};
+use crate::tessellate::{About, Allowed, Carried, Sight, Triangulated, triangulate_about};
 
 /// The triangles of a round shape for one sight, with what their bounds for other sights need.
 pub(super) struct SharedMesh {
@@ -16,7 +16,7 @@ pub(super) struct SharedMesh {
 impl SharedMesh {
     /// The triangles for a sight whose tolerance is a length; `None` if they cannot be proven.
     pub(super) fn new(shape: &Shape, sight: Sight, about: About) -> Option<Self> {
-        let made = triangulate(shape, std::slice::from_ref(&sight), about, u64::MAX)?;
+        let made = triangulate_about(shape, std::slice::from_ref(&sight), about, u64::MAX)?;
         let places = made.mesh.positions();
         let longest = |corners: &[u32; 3]| {
             let [a, b, c] = corners.map(|corner| places[corner as usize]);

@@ -8,8 +8,9 @@ use super::curved::make_curved_together;
 use super::limits::{Limits, bounds};
 use super::making::{Surface, refine_parts};
 use super::mapped_mesh::MappedMesh;
-use super::placed_object::{PlacedObject, stretched, triangle_count};
+use super::placed_object::{PlacedObject, triangle_count};
 use super::plan::{Plan, seen_parts};
+use super::standing_in::{back_at_rest, stretched};
 use crate::material::Part;
 use crate::mesh::Mesh;
 use crate::scene::Measure;
@@ -82,6 +83,7 @@ pub(super) fn make_together<'a>(
                 around: around.unwrap_or_default(),
                 seen,
                 part: Cow::Owned(part.clone()),
+                at_rest: plan.itself.map(|_| parts[index].1.mesh().clone()),
             }
         });
         surfaces.push(steps.collect());
@@ -119,25 +121,6 @@ fn standing_in(plan: &Plan<'_>, parts: &[(String, Part)]) -> Vec<(String, Part)>
     }
 }
 
-/// The mesh at rest of a refined stand-in. The vertices of `before`, the mesh at rest that has been refined, stay as they
-/// are; those that are new are taken back.
-fn back_at_rest(plan: &Plan<'_>, before: &Mesh, refined: Mesh) -> Mesh {
-    let Some(to_rest) = plan.shown.stand_in_to_rest() else {
-        return refined;
-    };
-    fn kept<T: Copy>(old: Option<&[T]>, new: Option<&[T]>) -> Option<Vec<T>> {
-        let (old, new) = old.zip(new)?;
-        Some([old, &new[old.len()..]].concat())
-    }
-    let back = refined.transformed(&to_rest);
-    let positions = kept(Some(before.positions()), Some(back.positions()));
-    back.with_geometry(
-        positions.unwrap_or_default(),
-        kept(before.normals(), back.normals()),
-        kept(before.tangents(), back.tangents()),
-    )
-}
-
 /// The parts at rest, refined for one step after the other.
 fn refined_for_all(
     plans: &[Plan<'_>],
@@ -162,7 +145,7 @@ fn refined_for_all(
         let meshes: Vec<&Mesh> = standing_in.iter().map(|(_, part)| part.mesh()).collect();
         let refined = refine_parts(plan, &meshes, &draft.limits, used.saturating_add(share));
         for ((_, part), refined) in parts.iter_mut().zip(refined) {
-            *part = part.with_mesh(back_at_rest(plan, part.mesh(), refined.mesh));
+            *part = part.with_mesh(back_at_rest(&plan.shown, part.mesh(), refined.mesh));
         }
     }
     parts

@@ -22,15 +22,23 @@ pub enum VertexValues {
 }
 
 impl VertexData {
-    /// The attributes of the vertices of a mesh that stands for an object at rest.
-    pub(super) fn new(shown: &ModelView, stand_in: &Mesh, wanted: Attributes) -> Self {
+    /// The attributes of the vertices of a mesh that stands for an object, whose own mesh is `at_rest` if that is another.
+    pub(super) fn new(
+        shown: &ModelView,
+        stand_in: &Mesh,
+        at_rest: Option<&Mesh>,
+        wanted: Attributes,
+    ) -> Self {
         let numbers = |value: &(dyn Fn(DVec3) -> f64 + Sync)| {
             VertexValues::Numbers(stand_in.of_each_position(value))
         };
         let values = |attribute| match attribute {
             Attribute::Doppler => numbers(&|position| shown.stand_in_doppler_factor(position)),
             Attribute::EmissionTime => numbers(&|position| shown.stand_in_emission_time(position)),
-            Attribute::RestPosition => VertexValues::Vectors(rest_positions(shown, stand_in)),
+            Attribute::RestPosition => {
+                let at_rest = at_rest.unwrap_or(stand_in);
+                VertexValues::Vectors(at_rest.of_each_position(|position| position))
+            }
             Attribute::Radiance => {
                 numbers(&|position| shown.stand_in_doppler_factor(position).powi(4))
             }
@@ -88,14 +96,6 @@ impl VertexData {
             VertexValues::Numbers(numbers) => Some(numbers),
             VertexValues::Vectors(_) => None,
         }
-    }
-}
-
-/// The positions at rest of the vertices of a stand-in.
-fn rest_positions(shown: &ModelView, stand_in: &Mesh) -> Vec<DVec3> {
-    match shown.stand_in_to_rest() {
-        None => stand_in.of_each_position(|position| position),
-        Some(to_rest) => stand_in.of_each_position(|position| to_rest.transform_point3(position)),
     }
 }
 

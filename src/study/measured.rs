@@ -135,13 +135,48 @@ fn of_one(
     }
 }
 
-/// Where a point of a surface is seen that is seen nearest to `drawn`: by the method of Gauss and Newton, from a first one on,
-/// as long as that leads nearer. If that is not `enough`, as at a rim, steps along both sides of the facet go on, each half
-/// as long as the one before.
+/// Where a point of a surface is seen that is seen nearest to `drawn`: found from the first one on, and if that is not
+/// `enough`, as where the surface bends far away from its facet, also from the nearest of many around the facet.
 ///
 /// `seen` tells where the point is seen that is next to the first one after a step at rest.
 fn nearest_seen(
     seen: impl Fn(DVec3) -> DVec3,
+    sides: [DVec3; 2],
+    drawn: DVec3,
+    enough: f64,
+) -> DVec3 {
+    /// Around the facet up to so many times its sides, in so many steps each way; then so often around the nearest of these,
+    /// each time up to this part of the way before.
+    const REACH: f64 = 3.0;
+    const STEPS: i32 = 12;
+    const ROUNDS: i32 = 24;
+    const NEARER: f64 = 0.4;
+
+    let first = nearest_from(&seen, DVec3::ZERO, sides, drawn, enough);
+    let distance = |at: DVec3| seen(at).distance(drawn);
+    let (mut at, mut nearest) = (first, distance(first));
+    for round in 0..ROUNDS {
+        if nearest < enough {
+            break;
+        }
+        let middle = if round == 0 { DVec3::ZERO } else { at };
+        let step = REACH * NEARER.powi(round) / f64::from(STEPS);
+        for (u, v) in (-STEPS..=STEPS).flat_map(|u| (-STEPS..=STEPS).map(move |v| (u, v))) {
+            let next = middle + (sides[0] * f64::from(u) + sides[1] * f64::from(v)) * step;
+            if distance(next) < nearest {
+                (at, nearest) = (next, distance(next));
+            }
+        }
+    }
+    seen(at)
+}
+
+/// A step at rest to a point that is seen near to `drawn`: by the method of Gauss and Newton, from one step on, as long as
+/// that leads nearer. If that is not `enough`, as at a rim, steps along both sides of the facet go on, each half as long as
+/// the one before.
+fn nearest_from(
+    seen: impl Fn(DVec3) -> DVec3,
+    mut at: DVec3,
     sides: [DVec3; 2],
     drawn: DVec3,
     enough: f64,
@@ -152,7 +187,6 @@ fn nearest_seen(
     const DIFFERENCE: f64 = 1e-5;
     const HALVINGS: i32 = 24;
 
-    let mut at = DVec3::ZERO;
     let mut nearest = seen(at);
     for _ in 0..STEPS {
         let [u, v] = sides.map(|side| {
@@ -183,7 +217,7 @@ fn nearest_seen(
             }
         }
     }
-    nearest
+    at
 }
 
 /// The largest errors of so many places.

@@ -40,7 +40,10 @@ mod survey;
 pub(crate) use allowance::Allowance;
 pub(crate) use certificate::{Bounds, Counts, Singles, rounding_bound};
 pub use certificate::{Certificate, Precision};
-pub(crate) use curved::{About, Allowed, Carried, Sight, Triangulated, needed, triangulate};
+pub(crate) use curved::{
+    About, Allowed, Carried, Sight, Triangulated, needed, triangulate, triangulate_about,
+    triangulate_within,
+};
 pub use gap::{edge_gap, triangle_gap, triangle_gap_place};
 use minimum::minimum_triangles;
 pub(crate) use motion::Motion;

@@ -116,15 +116,17 @@ impl Shape {
 
     /// The number of triangles of the coarsest body of a round shape.
     pub(crate) fn coarsest_curved(&self) -> usize {
-        let pieces = self.pieces(false);
-        let rims: Vec<_> = (0..Body::rims(&pieces))
-            .map(|_| Body::even_rim(LEAST_PARTS))
-            .collect();
-        Body::new(&pieces, &rims).triangles.len()
+        Body::coarsest(&self.pieces(false)).triangles.len()
     }
 }
 
 impl Body {
+    /// The body with the fewest vertices on its rims.
+    pub(crate) fn coarsest(pieces: &[Piece]) -> Self {
+        let rims = (0..Self::rims(pieces)).map(|_| Self::even_rim(LEAST_PARTS));
+        Self::new(pieces, &rims.collect::<Vec<_>>())
+    }
+
     /// The coarsest triangles between vertices on the pieces; `rims` holds the turns of the vertices on each rim, in their
     /// order.
     pub(crate) fn new(pieces: &[Piece], rims: &[Vec<f64>]) -> Self {

@@ -7,6 +7,14 @@ use super::estimate::Estimate;
 use super::net::{NONE, Net, next, previous, triangle_of};
 use crate::shape::{Piece, Spot};
 
+/// How a triangle becomes smaller at one of its sides.
+pub(super) enum Division {
+    /// This side is divided.
+    Of(u32),
+    /// This side is turned, to make these triangles.
+    Turn(u32, [[u32; 3]; 2]),
+}
+
 impl Net<'_> {
     fn link(&mut self, a: u32, b: u32) {
         self.twins[a as usize] = b;
@@ -116,6 +124,42 @@ impl Net<'_> {
             .all(|&made| self.may_be(made, of));
         self.take_last_vertex();
         self.split_at(half_edge, if is_sound { spot } else { middle })
+    }
+
+    /// How a triangle becomes smaller at a side. If a corner opposite the side is in its middle already, as after another
+    /// triangle's side was divided there, dividing it would make the same triangles again, and again: then the triangle's
+    /// longest side is divided, and if that is this one, it is turned, or if it cannot be, the next longest side is divided.
+    pub(super) fn division(&self, half_edge: u32) -> Division {
+        /// Corners nearer to the middle than this part of the side are in it.
+        const NEAR: f64 = 1e-2;
+        let place = |vertex: u32| self.vertices[vertex as usize].place;
+        let length = |e: u32| place(self.start(e)).distance(place(self.end(e)));
+        let twin = self.twin(half_edge);
+        let middle = self.middle(half_edge);
+        let middle = self.piece_of(triangle_of(half_edge)).place_of(&middle);
+        let near = NEAR * length(half_edge);
+        let is_in_it = |e: u32| place(self.start(e)).distance(middle) <= near;
+        if ![previous(half_edge), previous(twin)]
+            .into_iter()
+            .any(is_in_it)
+        {
+            return Division::Of(half_edge);
+        }
+        let [one, two] = [next(half_edge), previous(half_edge)];
+        let longest = if length(two) > length(one) { two } else { one };
+        if length(longest) > length(half_edge) {
+            return Division::Of(longest);
+        }
+        let of = self.of[triangle_of(half_edge)];
+        let may_turn = |made: &[[u32; 3]; 2]| {
+            let [_, d, c] = made[0];
+            !self.divided.contains(&[c.min(d), c.max(d)])
+                && made.iter().all(|&made| self.may_be(made, of))
+        };
+        match self.turned(half_edge).filter(may_turn) {
+            Some(made) => Division::Turn(half_edge, made),
+            None => Division::Of(longest),
+        }
     }
 
     fn split_at(&mut self, half_edge: u32, spot: Spot) -> [usize; 4] {

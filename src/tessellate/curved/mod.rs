@@ -35,4 +35,4 @@ mod triangulate;
 pub(crate) use carried::Carried;
 pub(crate) use minimum::needed;
 pub(crate) use sight::{About, Allowed, Sight};
-pub(crate) use triangulate::{Triangulated, triangulate};
+pub(crate) use triangulate::{Triangulated, triangulate, triangulate_about, triangulate_within};

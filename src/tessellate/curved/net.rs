@@ -403,6 +403,11 @@ impl<'a> Net<'a> {
         self.faces_outwards(corners.map(|corner| self.placed(corner)), piece)
     }
 
+    /// Whether a triangle is so thin that rounding decides where it faces.
+    pub(super) fn is_line(&self, triangle: usize) -> bool {
+        is_line(self.triangles[triangle].map(|corner| self.vertices[corner as usize].place))
+    }
+
     /// Whether such a triangle also faces, as seen, where the photosurface at its corners does.
     pub(super) fn is_sound(&self, corners: [u32; 3], piece: u8) -> bool {
         self.may_be(corners, piece)
@@ -415,7 +420,7 @@ impl<'a> Net<'a> {
     }
 }
 
-/// Whether a triangle is so thin that rounding decides where it faces.
+/// Whether a triangle with these corners is.
 fn is_line([a, b, c]: [DVec3; 3]) -> bool {
     /// How high a triangle is at least, as a fraction of its longest side.
     const LEAST_HEIGHT: f64 = 1e-8;

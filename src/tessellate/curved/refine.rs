@@ -1,7 +1,9 @@
 //! What the front has left: edges divided and turned, vertices taken away and moved, by the distance from the photosurface.
 
+use std::array::from_fn;
 use std::collections::BinaryHeap;
 
+use super::change::Division;
 use super::chart::Facet;
 use super::estimate::Estimate;
 use super::front::Turn;
@@ -116,49 +118,78 @@ impl Net<'_> {
 
     /// Divides the worst side of a triangle, and turns edges around it; returns the triangles that have changed.
     pub(super) fn divide(&mut self, triangle: usize) -> Vec<usize> {
-        let sides = self.estimates[triangle].sides;
-        let worst = (0..3).fold(
-            0,
-            |worst, k| if sides[k] > sides[worst] { k } else { worst },
-        );
-        let half_edge = (3 * triangle + (worst + 1) % 3) as u32;
-        let ends = [self.start(half_edge), self.end(half_edge)];
-        self.divided
-            .insert([ends[0].min(ends[1]), ends[0].max(ends[1])]);
-        let made = self.split(half_edge);
-        made.into_iter().for_each(|triangle| self.update(triangle));
-        // Turned edges at the new vertex might make the same triangle again, and again.
-        let changed =
-            self.improve_around(half_edges_of(&made), Some(self.vertices.len() as u32 - 1));
-        made.into_iter().chain(changed).collect()
+        let worst = opposite_largest(triangle, self.estimates[triangle].sides);
+        self.divide_at(worst, |net, half_edge| {
+            net.keep_divided(half_edge);
+            let made = net.split(half_edge);
+            made.into_iter().for_each(|triangle| net.update(triangle));
+            // Turned edges at the new vertex might make the same triangle again, and again.
+            let changed =
+                net.improve_around(half_edges_of(&made), Some(net.vertices.len() as u32 - 1));
+            made.into_iter().chain(changed).collect()
+        })
     }
 
-    /// Divides the side of a triangle that is seen longest; returns the triangles that have changed. Whatever cannot be proven
-    /// becomes small enough for it in the end, and round enough. `bound` is the bound of its distance as a fraction of what is
-    /// allowed.
-    pub(super) fn cut(&mut self, triangle: usize, (number, bound): (usize, f64)) -> Vec<usize> {
-        if self.estimates[triangle].whole > 1.0 {
+    /// Divides a side of a triangle that is not proven; returns the triangles that have changed. `bound` is the bound of its
+    /// distance as a fraction of what is allowed. The side is the worst one if the triangle is estimated to be too far away,
+    /// and otherwise that which is seen longest: whatever cannot be proven becomes small enough for it in the end, and round
+    /// enough. If `is_stubborn`, as it has been divided a few times, it is the longest one in any case.
+    pub(super) fn cut(
+        &mut self,
+        triangle: usize,
+        (number, bound): (usize, f64),
+        is_stubborn: bool,
+    ) -> Vec<usize> {
+        if self.estimates[triangle].whole > 1.0 && !is_stubborn {
             return self.divide(triangle);
         }
+        let longest = opposite_largest(triangle, self.lengths_as_seen(triangle, bound));
+        self.divide_at(longest, |net, half_edge| {
+            let made = net.split_as_seen(half_edge, number);
+            made.into_iter().for_each(|triangle| net.update(triangle));
+            made.to_vec()
+        })
+    }
+
+    /// Divides a side by `split`, or what is better divided or turned in its place; returns the triangles that have changed.
+    fn divide_at(
+        &mut self,
+        half_edge: u32,
+        split: impl FnOnce(&mut Self, u32) -> Vec<usize>,
+    ) -> Vec<usize> {
+        match self.division(half_edge) {
+            Division::Of(half_edge) => split(self, half_edge),
+            Division::Turn(half_edge, made) => {
+                self.keep_divided(half_edge);
+                let turned = self.turn(half_edge, made);
+                turned
+                    .into_iter()
+                    .for_each(|triangle| self.update(triangle));
+                turned.to_vec()
+            }
+        }
+    }
+
+    /// Keeps turns of edges from bringing this one back.
+    fn keep_divided(&mut self, half_edge: u32) {
+        let (a, b) = (self.start(half_edge), self.end(half_edge));
+        self.divided.insert([a.min(b), a.max(b)]);
+    }
+
+    /// How long the sides of a triangle are seen, opposite each corner, in units of the distance that is allowed. Chords of rims
+    /// count half, as they are right already, unless they are what is wrong.
+    pub(super) fn lengths_as_seen(&self, triangle: usize, bound: f64) -> [f64; 3] {
         let corners = self.triangles[triangle];
         let rims = self.rims_of(triangle);
-        let sides = [0, 1, 2].map(|k| {
+        let Estimate { whole, sides } = self.estimates[triangle];
+        from_fn(|k| {
             let lengths = self.task.sights.iter().enumerate().map(|(number, sight)| {
                 let seen = self.seen_by(number, corners);
                 (seen[(k + 2) % 3] - seen[(k + 1) % 3]).length() / sight.allowed(seen)
             });
-            // Chords of rims are right already, unless they are what is wrong.
-            let Estimate { whole, sides } = self.estimates[triangle];
             let is_right = rims[k] && sides[k] * bound <= whole;
             lengths.fold(0.0, f64::max) * if is_right { 0.5 } else { 1.0 }
-        });
-        let worst = (0..3).fold(
-            0,
-            |worst, k| if sides[k] > sides[worst] { k } else { worst },
-        );
-        let made = self.split_as_seen((3 * triangle + (worst + 1) % 3) as u32, number);
-        made.into_iter().for_each(|triangle| self.update(triangle));
-        made.to_vec()
+        })
     }
 
     /// Takes away vertices and moves others, so that fewer triangles are near enough.
@@ -357,4 +388,12 @@ impl Net<'_> {
 struct Vertices {
     out: u32,
     spot: Spot,
+}
+
+/// The side of a triangle with the largest of these numbers, one for the side opposite each corner.
+fn opposite_largest(triangle: usize, numbers: [f64; 3]) -> u32 {
+    let larger = |best: usize, k: usize| {
+        if numbers[k] > numbers[best] { k } else { best }
+    };
+    (3 * triangle + ((0..3).fold(0, larger) + 1) % 3) as u32
 }

@@ -6,6 +6,7 @@ use std::collections::{HashMap, HashSet};
 use glam::{DVec2, DVec3};
 
 use super::bounds::{BoundsOf, points_of, proven};
+use super::minimum::needed;
 use super::net::{Net, Task};
 use super::rims::divided_rims;
 use super::sight::About;
@@ -14,8 +15,10 @@ use crate::mesh::Mesh;
 use crate::shape::{Body, Piece, Shape, Spot};
 use crate::tessellate::count::Count;
 
-/// How often triangles that are not proven are divided.
+/// How often triangles that are not proven are divided, and how often before the longest ones come first. Where two share a
+/// side, dividing that first again and again would leave the long side of one of them as it is.
 const REPAIRS: usize = 40;
+const REPAIRS_AT_FIRST: usize = 4;
 
 /// How many times as many triangles as before there may be after each of refinement and repairs, and a few that do not count.
 const MOST_TIMES: usize = 3;
@@ -30,13 +33,22 @@ const CALM: usize = 115;
 /// How many looks at places each proof may take, and some that do not count. Most take 6 to 15; small meshes with tips take
 /// most.
 const LOOKS: u64 = 40;
-const SOME_LOOKS: u64 = 25_000;
+const SOME_LOOKS: u64 = 60_000;
 
-/// If there are more triangles than there may be, the tolerance is multiplied by a factor, at least by this one; after a few
-/// times the least factor is squared each time.
+/// Where a surface takes more than this many times the fewest triangles, points may take fewer: the proof asks places not to
+/// slide far along the surface.
+const THRIFTY: f64 = 2.5;
+
+/// A tolerance that needs more triangles than there may be is multiplied by a factor, at first by this one; each time that is
+/// not enough the factor is squared.
 const LOOSER: f64 = 1.15;
-const GENTLY: usize = 5;
 const LOOSENINGS: usize = 18;
+
+/// Of so many triangles, and of more in one attempt, at least this share is used, if that can be found in a few more attempts
+/// with tolerances that are not as loose.
+const USED: f64 = 0.8;
+const FEW_TO_USE: usize = 50_000;
+const TIGHTENINGS: usize = 5;
 
 /// The triangles of a round shape.
 #[derive(Clone, Debug)]
@@ -48,18 +60,71 @@ pub(crate) struct Triangulated {
     pub(crate) bounds: Vec<Vec<[f64; 2]>>,
 }
 
+impl Triangulated {
+    /// The number of triangles.
+    fn count(&self) -> usize {
+        self.mesh.triangle_count()
+    }
+}
+
 /// The triangles of a round shape for all of these sights, at most `most` of them or those of the coarsest form; `None` if
-/// one cannot be proven.
+/// there are more or one cannot be proven. Surfaces that cannot be proven, mostly those of few triangles for a fast observer,
+/// and those that take many triangles, are tried as points, which are never nearer than surfaces.
 pub(crate) fn triangulate(
     shape: &Shape,
     sights: &[Sight],
     about: About,
     most: u64,
 ) -> Option<Triangulated> {
+    let made = triangulate_about(shape, sights, about, most);
+    if about == About::Points {
+        return made;
+    }
+    let least = || {
+        let of_each = sights.iter().map(|sight| needed(shape, sight, about).least);
+        of_each.fold(1.0, f64::max)
+    };
+    match made {
+        Some(made) if made.count() as f64 <= THRIFTY * least() => Some(made),
+        Some(made) => {
+            let fewer = made.count() as u64 - 1;
+            Some(triangulate_about(shape, sights, About::Points, fewer.min(most)).unwrap_or(made))
+        }
+        None => triangulate_about(shape, sights, About::Points, most),
+    }
+}
+
+/// The same by one measure alone.
+pub(crate) fn triangulate_about(
+    shape: &Shape,
+    sights: &[Sight],
+    about: About,
+    most: u64,
+) -> Option<Triangulated> {
+    let pieces = shape.pieces(about == About::Points);
+    let task = Task {
+        pieces: &pieces,
+        sights,
+        about,
+        aim: AIMS[0],
+    };
+    let (net, bounds) = within(task, usize::try_from(most).unwrap_or(usize::MAX))?;
+    Some(assembled(shape, &net, bounds))
+}
+
+/// The triangles of a round shape for tolerances that are multiplied by a factor, so that at most `most` triangles are left:
+/// about by `guess`. Where no looser tolerance can be proven these are the triangles of the coarsest form, and nothing is
+/// known of them.
+pub(crate) fn triangulate_within(
+    shape: &Shape,
+    sights: &[Sight],
+    about: About,
+    most: u64,
+    guess: f64,
+) -> Triangulated {
     let pieces = shape.pieces(about == About::Points);
     let most = usize::try_from(most).unwrap_or(usize::MAX);
-    let (mut looser, mut factor) = (1.0, LOOSER);
-    for times in 0..LOOSENINGS {
+    let attempt = |looser: f64| {
         let aimed: Vec<Sight> = sights.iter().map(|sight| sight.loosened(looser)).collect();
         let task = Task {
             pieces: &pieces,
@@ -67,27 +132,58 @@ pub(crate) fn triangulate(
             about,
             aim: AIMS[0],
         };
-        match within(task, most) {
-            Ok(made) => return made.map(|(net, bounds)| assembled(shape, &net, bounds)),
-            Err(count) => {
-                looser *= factor.max(count as f64 / most.max(1) as f64);
-                if times >= GENTLY {
-                    factor *= factor;
-                }
-            }
+        let (net, bounds) = within(task, most)?;
+        Some(assembled(shape, &net, bounds))
+    };
+    let (mut too_tight, mut looser, mut factor) = (1.0f64, guess.clamp(LOOSER, 1e100), LOOSER);
+    let mut best = None;
+    for _ in 0..LOOSENINGS {
+        best = attempt(looser);
+        if best.is_some() || looser > 1e200 {
+            break;
+        }
+        too_tight = looser;
+        looser *= factor;
+        factor *= factor;
+    }
+    let Some(mut best) = best else {
+        return coarsest(shape, sights, about);
+    };
+    for _ in 0..TIGHTENINGS {
+        let is_used = best.count() as f64 >= USED * most as f64;
+        if is_used || most > FEW_TO_USE || looser < LOOSER * too_tight {
+            break;
+        }
+        let between = (looser * too_tight).sqrt();
+        match attempt(between) {
+            Some(made) if made.count() >= best.count() => (best, looser) = (made, between),
+            _ => too_tight = between,
         }
     }
-    None
+    best
 }
 
-/// The net for a task, with its bounds, `None` if one of its triangles cannot be proven; the number of triangles where it
-/// has more than `most`.
-fn within(task: Task<'_>, most: usize) -> Result<Option<(Net<'_>, BoundsOf)>, usize> {
+/// The coarsest form of a round shape, with no bounds.
+fn coarsest(shape: &Shape, sights: &[Sight], about: About) -> Triangulated {
+    let pieces = shape.pieces(about == About::Points);
+    let body = Body::coarsest(&pieces);
+    let task = Task {
+        pieces: &pieces,
+        sights,
+        about,
+        aim: AIMS[0],
+    };
+    assembled(shape, &Net::new(&body, task), BoundsOf::new())
+}
+
+/// The net for a task, with its bounds; `None` if it has more than `most` triangles and more than the coarsest body, or if one
+/// of them cannot be proven.
+fn within(task: Task<'_>, most: usize) -> Option<(Net<'_>, BoundsOf)> {
     let rims = divided_rims(task.pieces, task.sights, most);
     let body = Body::new(task.pieces, &rims);
-    let is_coarsest = body.triangles.len();
-    // A little more may be taken away again.
-    let limit = most.saturating_add(most / 4).max(is_coarsest);
+    let most = most.max(Body::coarsest(task.pieces).triangles.len());
+    // More may be taken away again.
+    let limit = most.saturating_add(most / 4).saturating_add(FEW);
     let mut grown = Grown::new(&body, task, limit);
     for &aim in &AIMS[1..] {
         if grown.is_calm() {
@@ -101,18 +197,12 @@ fn within(task: Task<'_>, most: usize) -> Result<Option<(Net<'_>, BoundsOf)>, us
     let Grown {
         mut net, may_be, ..
     } = grown;
-    if net.triangles.len() > limit {
-        return Err(net.triangles.len().max(most + 1));
-    }
-    if net.triangles.len() > may_be {
-        return Ok(None);
+    if net.triangles.len() > limit.min(may_be) {
+        return None;
     }
     net.tidy();
-    let bounds = repaired(&mut net, most);
-    match net.count() {
-        count if count > most && count > is_coarsest => Err(count),
-        _ => Ok(bounds.map(|bounds| (net, bounds))),
-    }
+    let bounds = repaired(&mut net, most)?;
+    (net.count() <= most).then_some((net, bounds))
 }
 
 /// A net after its front and what that has left.
@@ -144,19 +234,19 @@ impl<'a> Grown<'a> {
     }
 }
 
-/// The bounds of all triangles, after those that are not proven have been divided; `None` if some never are. Stops where
-/// there are more than `most`.
+/// The bounds of all triangles, after those that are not proven, and lines, have been divided; `None` if some never are. Stops
+/// where there are more than `most`.
 fn repaired(net: &mut Net<'_>, most: usize) -> Option<BoundsOf> {
     let mut bounds = BoundsOf::new();
     let mut open: Vec<usize> = (0..net.triangles.len()).filter(|&t| net.alive[t]).collect();
     let most = most.min(MOST_TIMES * open.len() + FEW);
     let proofs = open.len() * net.task.sights.len();
     let looks = Count::up_to(LOOKS * proofs as u64 + SOME_LOOKS);
-    for _ in 0..=REPAIRS {
+    for repair in 0..=REPAIRS {
         let found = proven(net, &open, &looks)?;
         let failed = open.iter().copied();
-        let failed: Vec<usize> = failed
-            .filter(|t| !(net.share(*t, &found[t]).1 <= 1.0))
+        let mut failed: Vec<usize> = failed
+            .filter(|t| !(net.share(*t, &found[t]).1 <= 1.0) || net.is_line(*t))
             .collect();
         bounds.extend(found);
         if failed.is_empty() {
@@ -165,12 +255,22 @@ fn repaired(net: &mut Net<'_>, most: usize) -> Option<BoundsOf> {
         if net.count() > most {
             break;
         }
+        let is_stubborn = repair >= REPAIRS_AT_FIRST;
+        if is_stubborn {
+            let length = |t: &usize| {
+                let (_, bound) = net.share(*t, &bounds[t]);
+                net.lengths_as_seen(*t, bound)
+                    .into_iter()
+                    .fold(0.0, f64::max)
+            };
+            failed.sort_by(|a, b| length(b).total_cmp(&length(a)).then(a.cmp(b)));
+        }
         let mut changed = HashSet::new();
         for triangle in failed {
             // A neighbour's division may have changed it.
             if !changed.contains(&triangle) {
                 let excess = net.share(triangle, &bounds[&triangle]);
-                changed.extend(net.cut(triangle, excess));
+                changed.extend(net.cut(triangle, excess, is_stubborn));
             }
         }
         open = changed.into_iter().collect();
@@ -404,6 +504,46 @@ mod tests {
             }
         }
         assert!(proven > 200, "{proven}");
+    }
+
+    /// Where two triangles share a side that is divided again and again, and where a corner is in the middle of a side already.
+    #[test]
+    fn what_fast_observers_see_is_proven() {
+        let [sphere, torus, cylinder, cone, rod] = [
+            Shape::sphere(1.0),
+            Shape::torus(1.0, 0.25),
+            Shape::cylinder(1.0, 2.0),
+            Shape::cone(1.0, 2.0),
+            Shape::rod(10.0, 0.1),
+        ]
+        .map(Result::unwrap);
+        for (shape, beta, about, tolerance, most) in [
+            (&sphere, 0.99999, About::Points, 0.56, 2.5),
+            (&sphere, 0.99999, About::Points, 0.056, 2.5),
+            (&cone, 0.9999, About::Points, 0.0355, 5.0),
+            (&cone, 0.99999, About::Points, 1.118, 9.0),
+            (&rod, 0.9999, About::Points, 0.0732, 3.5),
+            (&sphere, 0.999, About::Surface, 0.1886, 9.0),
+            (&torus, 0.9999, About::Surface, 0.02775, 40.0),
+            (&cylinder, 0.99999, About::Surface, 0.1118, 120.0),
+            (&cone, 0.9999, About::Surface, 0.1064, 30.0),
+        ] {
+            let velocity = Velocity::from_beta(beta, DVec3::X).unwrap();
+            let to_offset = DAffine3::from_translation(-2.0 * DVec3::X);
+            let sight = Sight::new(&velocity, to_offset, Allowed::Length(tolerance));
+            let sights = std::slice::from_ref(&sight);
+            let made = triangulate(shape, sights, about, u64::MAX);
+            let case = format!("{shape:?} {beta} {about:?}");
+            let made = made.unwrap_or_else(|| panic!("{case}: not proven"));
+            assert_closed(&made.mesh, &case);
+            let bounds = &made.bounds[0];
+            assert!(
+                bounds.iter().all(|&[bound, _]| bound <= tolerance),
+                "{case}"
+            );
+            let ratio = made.count() as f64 / needed(shape, &sight, about).least;
+            assert!(ratio < most, "{case}: {ratio}");
+        }
     }
 
     /// In the parameters of a cone nothing is between three spots of its rim, though there is a triangle.

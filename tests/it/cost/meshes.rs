@@ -154,6 +154,43 @@ fn round_shapes_are_measured_against_the_true_surface() {
     }
 }
 
+/// Where the surface is seen far from its facet the nearest place is not next to that with the same weights.
+#[test]
+fn round_shapes_of_fast_observers_are_measured_against_the_true_surface() {
+    let workplace = Workplace::new();
+    for (shape, beta, tolerance) in [
+        (
+            r#"{ "cylinder": { "radius": 0.7, "height": 2 } }"#,
+            0.99,
+            "1e-2",
+        ),
+        (
+            r#"{ "torus": { "major_radius": 1, "minor_radius": 0.35 } }"#,
+            0.99,
+            "1e-2",
+        ),
+        (
+            r#"{ "torus": { "major_radius": 1, "minor_radius": 0.35 } }"#,
+            0.999,
+            "1e-3",
+        ),
+    ] {
+        workplace.write(
+            "scene.json",
+            format!(
+                r#"{{ "observer": {{ "velocity": {{ "beta": {beta}, "direction": [-1, 0, 0] }} }},
+                "objects": [ {{ "name": "round", "shape": {shape}, "position": [0, 3, 0] }} ] }}"#
+            ),
+        );
+        for measure in ["points", "surface"] {
+            let flags = format!("scene.json -q --measure {measure} --tolerances {tolerance}");
+            rows(&study(&workplace, &flags))
+                .iter()
+                .for_each(assert_consistent);
+        }
+    }
+}
+
 #[test]
 fn angles_are_proven_and_measured_as_angles() {
     let workplace = Workplace::new();
