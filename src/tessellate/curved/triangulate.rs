@@ -43,6 +43,10 @@ const THRIFTY: f64 = 2.5;
 /// not enough the factor is squared.
 const LOOSER: f64 = 1.15;
 const LOOSENINGS: usize = 18;
+const LOOSEST: f64 = 1e305;
+
+/// So many triangles more than there may be, beside a quarter, may be taken away again.
+const SPARE: usize = 5_000;
 
 /// Of so many triangles, and of more in one attempt, at least this share is used, if that can be found in a few more attempts
 /// with tolerances that are not as loose.
@@ -135,11 +139,11 @@ pub(crate) fn triangulate_within(
         let (net, bounds) = within(task, most)?;
         Some(assembled(shape, &net, bounds))
     };
-    let (mut too_tight, mut looser, mut factor) = (1.0f64, guess.clamp(LOOSER, 1e100), LOOSER);
+    let (mut too_tight, mut looser, mut factor) = (1.0f64, guess.max(LOOSER), LOOSER);
     let mut best = None;
     for _ in 0..LOOSENINGS {
-        best = attempt(looser);
-        if best.is_some() || looser > 1e200 {
+        best = attempt(looser.min(LOOSEST));
+        if best.is_some() || looser > LOOSEST {
             break;
         }
         too_tight = looser;
@@ -154,7 +158,7 @@ pub(crate) fn triangulate_within(
         if is_used || most > FEW_TO_USE || looser < LOOSER * too_tight {
             break;
         }
-        let between = (looser * too_tight).sqrt();
+        let between = looser.sqrt() * too_tight.sqrt();
         match attempt(between) {
             Some(made) if made.count() >= best.count() => (best, looser) = (made, between),
             _ => too_tight = between,
@@ -182,8 +186,7 @@ fn within(task: Task<'_>, most: usize) -> Option<(Net<'_>, BoundsOf)> {
     let rims = divided_rims(task.pieces, task.sights, most);
     let body = Body::new(task.pieces, &rims);
     let most = most.max(Body::coarsest(task.pieces).triangles.len());
-    // More may be taken away again.
-    let limit = most.saturating_add(most / 4).saturating_add(FEW);
+    let limit = most.saturating_add(most / 4).saturating_add(SPARE);
     let mut grown = Grown::new(&body, task, limit);
     for &aim in &AIMS[1..] {
         if grown.is_calm() {

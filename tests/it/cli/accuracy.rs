@@ -428,8 +428,8 @@ fn round_shapes_use_a_budget_and_keep_it() {
             "--tolerance 1e-2 --measure points",
             8,
         ),
-        (r#""beta": 0.999"#, &rod, "--measure points", 16),
-        (r#""beta": 0.9"#, &rods.join(","), "--tolerance 1e-2", 320),
+        (r#""beta": 0.999"#, &rod, "--measure points", 28),
+        (r#""beta": 0.9"#, &rods.join(","), "--tolerance 1e-3", 560),
     ] {
         workplace.write("scene.json", scene(speed, objects));
         let made = |budget: u64| {
