@@ -26,7 +26,7 @@ pub(super) struct AccuracyArgs {
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<Tolerance>,
     /// Which distance the tolerance limits: points, between where each point is drawn and where it is seen; or surface,
-    /// between the mesh and the photosurface as surfaces, which takes fewer triangles and is enough for shape alone
+    /// between the mesh and the photosurface as surfaces, which is enough for shape alone and mostly takes fewer triangles
     /// [default: surface for round shapes without checker, attributes and effects of colour, else points]
     #[arg(long, value_name = "points|surface")]
     measure: Option<Measure>,
@@ -35,8 +35,9 @@ pub(super) struct AccuracyArgs {
     #[arg(long)]
     no_subdivide: bool,
     /// Maximum number of triangles of all photosurfaces together. If the tolerance needs more, the largest gaps are closed
-    /// first and the result is not certified. Triangles of the source are always kept. "none" for no limit: then no step is
-    /// predicted before the first is made, which saves time in parts of many steps [default: 20000000]
+    /// first and the result is not certified. Triangles of meshes and the coarsest forms of shapes are always kept. "none"
+    /// for no limit: then no step is predicted before the first is made, which saves time in parts of many steps
+    /// [default: 20000000]
     #[arg(long, value_name = "N", value_parser = budget, allow_hyphen_values = true)]
     max_triangles: Option<u64>,
 }
@@ -178,7 +179,7 @@ impl AccuracyArgs {
     pub(super) fn tell_beyond_budget(&self, triangles: f64, verbosity: Verbosity) {
         if triangles.round() > self.max_triangles() as f64 {
             verbosity.note(format_args!(
-                "{} triangles are more than --max-triangles {}: triangles of the source are always kept",
+                "{} triangles are more than --max-triangles {}: those of meshes and the coarsest forms of shapes are always kept",
                 grouped_number(triangles),
                 grouped(self.max_triangles() as usize)
             ));

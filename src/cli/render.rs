@@ -136,7 +136,7 @@ pub(super) fn made(args: &RenderArgs, loaded: &Loaded) -> anyhow::Result<Outcome
     if let Some(only) = &settings.only {
         ensure!(
             only.end <= settings.picture_count(steps),
-            "--only is {}..{}, but there are {}",
+            "--only is {}..{}, expected a part of {}",
             only.start,
             only.end,
             counted(settings.picture_count(steps), "picture")

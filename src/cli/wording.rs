@@ -28,7 +28,7 @@ pub(super) fn in_words_of_flags(error: ExportError) -> anyhow::Error {
              step to step; use --animate=frames, or a scene without these effects"
         ),
         ExportError::Part { only, steps } => anyhow!(
-            "--only is {}..{}, but there are {}",
+            "--only is {}..{}, expected a part of {}",
             only.start,
             only.end,
             counted(steps, "step")

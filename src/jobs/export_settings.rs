@@ -115,7 +115,7 @@ pub enum ExportError {
     #[error("an animation is one file, expected it without a file for each step")]
     SplitPlayback,
     /// Steps are asked for that the scene does not have.
-    #[error("the steps {}..{} are asked for, but there are {steps}", only.start, only.end)]
+    #[error("the steps {}..{} are asked for, expected numbers up to {steps}", only.start, only.end)]
     Part {
         /// The steps that are asked for.
         only: Range<usize>,

@@ -87,7 +87,7 @@ pub(in crate::cli) fn run(args: &SweepArgs) -> anyhow::Result<Status> {
     let only = args.only.clone().unwrap_or(0..of);
     ensure!(
         only.end <= of,
-        "--only is {}..{}, but there are {}",
+        "--only is {}..{}, expected a part of {}",
         only.start,
         only.end,
         counted(of, "run")
