@@ -19,6 +19,12 @@ use photosurface::{DVec3, Shape, Source, Tolerance, Velocity};
 
 const SPEEDS: [f64; 5] = [0.0, 0.5, 0.9, 0.99, 0.999];
 
+/// Where the observer is: on its line of motion through the shape, having passed it, and abeam of it.
+const PLACES: [(&str, DVec3); 2] = [
+    ("passed", DVec3::new(2.0, 0.0, 0.0)),
+    ("abeam", DVec3::new(0.0, -3.0, 0.0)),
+];
+
 fn main() {
     let mut tolerance = std::env::args().filter_map(|argument| argument.parse().ok());
     let tolerance =
@@ -31,14 +37,17 @@ fn main() {
         ("rod", Shape::rod(10.0, 0.1)),
     ];
     println!(
-        "shape      measure   speed  triangles  predicted      least  ratio     time  prediction"
+        "shape      place  measure   speed  triangles  predicted      least  ratio     time  prediction"
     );
-    for (name, shape) in shapes {
-        let shape = shape.expect("lengths above zero");
+    let shapes = shapes.map(|(name, shape)| (name, shape.expect("lengths above zero")));
+    let rows = shapes
+        .iter()
+        .flat_map(|shape| PLACES.map(|place| (shape, place)));
+    for ((name, shape), (place, observer)) in rows {
         for measure in Measure::ALL {
             for beta in SPEEDS {
                 let velocity = Velocity::from_beta(beta, DVec3::X).expect("slower than light");
-                let sighting = Sighting::new(DVec3::new(2.0, 0.0, 0.0), velocity, tolerance);
+                let sighting = Sighting::new(observer, velocity, tolerance);
                 let source = Source::Shape(shape.clone(), Appearance::default());
                 let placed = sighting.placed_in(measure, source);
                 let start = Instant::now();
@@ -54,7 +63,7 @@ fn main() {
                     (true, false) => "",
                 };
                 println!(
-                    "{name:<10} {:<8} {beta:6} {:10} {predicted:10.0} {:10.0} {:6.2} {:6.0} ms {:8.1} ms{note}",
+                    "{name:<10} {place:<6} {:<8} {beta:6} {:10} {predicted:10.0} {:10.0} {:6.2} {:6.0} ms {:8.1} ms{note}",
                     measure.name(),
                     certificate.triangles_out,
                     certificate.minimum_triangles,
