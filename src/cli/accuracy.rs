@@ -35,8 +35,8 @@ pub(super) struct AccuracyArgs {
     #[arg(long)]
     no_subdivide: bool,
     /// Maximum number of triangles of all photosurfaces together. If the tolerance needs more, the largest gaps are closed
-    /// first and the result is not certified. Triangles of meshes and the coarsest forms of shapes are always kept. "none"
-    /// for no limit: then no step is predicted before the first is made, which saves time in parts of many steps
+    /// first and the result is not certified. Triangles of meshes and the coarsest forms of shapes are kept. "none" for no
+    /// limit: then no step is predicted before the first is made, which saves time in parts of many steps
     /// [default: 20000000]
     #[arg(long, value_name = "N", value_parser = budget, allow_hyphen_values = true)]
     max_triangles: Option<u64>,

@@ -50,10 +50,14 @@ pub(super) struct Company {
 struct Key {
     velocity: VelocityKey,
     matrix: [u64; 9],
+    /// Three numbers along the axes, and the level of sizes.
     cell: [i64; 4],
+    shape: String,
+    tolerance: String,
+    is_of_points: bool,
 }
 
-/// Candidates of one key that are alike.
+/// The candidates of one key.
 struct Group<'a> {
     first: Candidate<'a>,
     size: f64,
@@ -64,7 +68,7 @@ struct Group<'a> {
 /// The companies of all candidates, which are in the order of the scene.
 pub(super) fn companies<'a>(candidates: impl Iterator<Item = Candidate<'a>>) -> Vec<Company> {
     let mut groups: Vec<Group<'a>> = vec![];
-    let mut of_keys: HashMap<Key, Vec<usize>> = HashMap::new();
+    let mut of_keys: HashMap<Key, usize> = HashMap::new();
     for candidate in candidates {
         let direction = candidate.to_offset.translation.normalize_or_zero();
         let (level, size) = cell_size(&candidate.velocity, direction);
@@ -74,24 +78,19 @@ pub(super) fn companies<'a>(candidates: impl Iterator<Item = Candidate<'a>>) -> 
             velocity: candidate.velocity.key(),
             matrix: matrix.map(f64::to_bits),
             cell: [x, y, z, level],
+            shape: format!("{:?}", candidate.shape),
+            tolerance: candidate.tolerance.to_flag(),
+            is_of_points: candidate.measure == Measure::Points,
         };
-        let of_key = of_keys.entry(key).or_default();
         let member = (candidate.object, direction);
-        let alike = of_key.iter().find(|&&group| {
-            let first = &groups[group].first;
-            (first.shape, first.tolerance, first.measure)
-                == (candidate.shape, candidate.tolerance, candidate.measure)
-        });
-        match alike {
-            Some(&group) => groups[group].members.push(member),
-            None => {
-                of_key.push(groups.len());
-                groups.push(Group {
-                    first: candidate,
-                    size,
-                    members: vec![member],
-                });
-            }
+        let group = *of_keys.entry(key).or_insert(groups.len());
+        match groups.get_mut(group) {
+            Some(group) => group.members.push(member),
+            None => groups.push(Group {
+                first: candidate,
+                size,
+                members: vec![member],
+            }),
         }
     }
     let large = groups
@@ -112,13 +111,14 @@ impl Group<'_> {
         let gamma_beta = self.first.velocity.gamma_beta();
         Company {
             leader: nearest.map_or(self.first.object, |&(object, _)| object),
-            tightened: 1.0 - RESERVE - RESERVE_APART * (gamma_beta * self.size).min(APART),
+            tightened: 1.0 - RESERVE - RESERVE_APART * gamma_beta * self.size,
             members: self.members.into_iter().map(|(object, _)| object).collect(),
         }
     }
 }
 
-/// The size of the cells of directions around one, a length on the unit sphere, and its power of two.
+/// The level of the cells of directions around one, each half as large as those of the level before, and their size, a
+/// length on the unit sphere.
 fn cell_size(velocity: &Velocity, direction: DVec3) -> (i64, f64) {
     let (gamma, gamma_beta) = (velocity.gamma(), velocity.gamma_beta());
     let along = direction.dot(velocity.direction());

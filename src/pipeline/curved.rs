@@ -19,16 +19,15 @@ use crate::tessellate::{
     Allowed, Counts, Sight, Triangulated, needed, triangulate, triangulate_within,
 };
 
-/// Carries out the plan of a round shape, with the mesh of others if that is good enough; `None` if not every triangle could
-/// be proven.
+/// Carries out the plan of a round shape, with the mesh of others if that is good enough; `None` if facets are better, as not
+/// every triangle could be proven.
 pub(super) fn make_curved<'a>(plan: &Plan<'a>, shared: Option<&SharedMesh>) -> Option<Surface<'a>> {
     let shaped = plan.placed_object.curved()?;
     let (name, placed) = &plan.placed_object.parts[0];
-    let about = plan.tolerance.about();
     let sight = sight_of(plan, shaped, Aim::Scene);
     let most = plan.max_triangles(plan.granted);
     let fits = |made: &Triangulated| made.mesh.triangle_count() as u64 <= most;
-    let shared = shared.and_then(|shared| shared.seen_by(&sight, about));
+    let shared = shared.and_then(|shared| shared.seen_by(&sight));
     let made = match shared.filter(fits) {
         Some(made) => made,
         None => {
@@ -36,6 +35,9 @@ pub(super) fn make_curved<'a>(plan: &Plan<'a>, shared: Option<&SharedMesh>) -> O
             made_for(std::slice::from_ref(plan), shaped, sights, most)?
         }
     };
+    if plan.has_fewer_facets(made.mesh.triangle_count() as u64) {
+        return None;
+    }
     let itself = plan.itself.and_then(|itself| itself.shaped.as_ref());
     let at_rest = itself.map(|itself| itself.part_of(made.mesh.clone(), placed).mesh().clone());
     let part = shaped.part_of(made.mesh, placed);
@@ -159,8 +161,8 @@ pub(super) fn predict_curved(plan: &Plan<'_>) -> Option<Predicted> {
 }
 
 /// The triangles of a round shape for the sights of these plans, at most `most` of them or those of its coarsest form: within
-/// the tolerance of the scene if so many are enough, otherwise within a looser one. `None` if nothing limits triangles and
-/// not every triangle could be proven.
+/// the tolerance of the scene if so many are enough, otherwise within a looser one. `None` if not every triangle could be
+/// proven, though nothing limits their number.
 fn made_for(
     plans: &[Plan<'_>],
     shaped: &Shaped,
@@ -169,14 +171,11 @@ fn made_for(
 ) -> Option<Triangulated> {
     let shape = &shaped.shape;
     let about = plans.first()?.tolerance.about();
-    let made = triangulate(shape, sights, about, most);
-    match plans.iter().any(Plan::is_limited) {
-        false => made,
-        true => made.or_else(|| {
-            let loosening = plans.iter().map(Plan::loosening).fold(1.0, f64::max);
-            Some(triangulate_within(shape, sights, about, most, loosening))
-        }),
-    }
+    triangulate(shape, sights, about, most).or_else(|| {
+        let loosening = plans.iter().map(Plan::loosening).fold(1.0, f64::max);
+        let is_limited = plans.iter().any(Plan::is_limited);
+        is_limited.then(|| triangulate_within(shape, sights, about, most, loosening))
+    })
 }
 
 /// How the observer sees the shape, with the distance that rounding leaves of a tolerance.

@@ -126,15 +126,32 @@ impl<'a> Plan<'a> {
         /// More would take minutes and gigabytes, mostly for a tolerance that no number of triangles reaches.
         const MOST: f64 = 4e6;
         let predicted = predicted_of_curved(self)?;
-        let is_worth = self.tolerance.measure == Measure::Points
-            || self.is_limited()
-            || predicted <= WORTH * self.facets_needed() as f64;
+        let is_worth = self.tolerance.measure == Measure::Points || {
+            let facets = self.facets_needed();
+            self.is_limited_with(facets) || predicted <= WORTH * facets as f64
+        };
         (is_worth && predicted <= MOST).then_some(predicted)
     }
 
     /// Whether a round shape has to be coarser than its tolerance asks for, or has more facets than triangles are granted.
     pub(super) fn is_limited(&self) -> bool {
-        self.loosening() > 1.0 || self.facets_needed() > self.max_triangles(self.granted)
+        self.is_limited_with(self.facets_needed())
+    }
+
+    /// The same of a shape that needs so many facets.
+    fn is_limited_with(&self, facets: u64) -> bool {
+        self.loosening() > 1.0 || facets > self.max_triangles(self.granted)
+    }
+
+    /// Whether a round shape that nothing limits, measured as a surface, has fewer facets than so many triangles.
+    pub(super) fn has_fewer_facets(&self, triangles: u64) -> bool {
+        let is_surface = self.tolerance.measure == Measure::Surface;
+        // Few triangles are fewer than facets.
+        const FEW: u64 = 1_000;
+        is_surface && triangles > FEW && {
+            let facets = self.facets_needed();
+            facets < triangles && !self.is_limited_with(facets)
+        }
     }
 
     /// About how many facets a shape takes.
@@ -153,6 +170,10 @@ impl<'a> Plan<'a> {
     /// Gives a shape, a round one too, facets of one resolution, as the tolerance asks for.
     pub(super) fn take_facets(&mut self, wanted: SurfaceOptions) {
         self.as_curved = None;
+        if wanted.subdivide && self.placed_object.curved().is_some() {
+            // Facets tell where the surface is, not where its points are.
+            self.tolerance.measure = Measure::Surface;
+        }
         let Some(shaped) = &self.placed_object.shaped else {
             return;
         };

@@ -73,9 +73,11 @@ fn bound_of(net: &Net<'_>, triangle: usize, number: usize, sight: &Sight) -> (f6
     let (rims, beside) = net.arcs(triangle);
     let is_at_rim = rims.iter().any(Option::is_some);
     let mut proof = Proof::new(facet, about, sight, seen, rims);
-    let bound = match about {
-        About::Surface if is_at_rim => proof.of_rim(beside, limit),
-        About::Surface => {
+    let tip = facet.tip().filter(|_| sight.gamma_beta == 0.0);
+    let bound = match (about, tip) {
+        (About::Surface, Some(tip)) => proof.of_tip_at_rest(tip, limit),
+        (About::Surface, None) if is_at_rim => proof.of_rim(beside, limit),
+        (About::Surface, None) => {
             let mut normals = net.normals_by(number, corners, of);
             let piece = net.piece_of(triangle);
             let is_pole = |k: &usize| piece.is_pole(&net.vertices[corners[*k] as usize].spot);
@@ -84,7 +86,7 @@ fn bound_of(net: &Net<'_>, triangle: usize, number: usize, sight: &Sight) -> (f6
             }
             proof.of_surface(normals, limit)
         }
-        About::Points => proof.of_points(limit),
+        (About::Points, _) => proof.of_points(limit),
     };
     let looks = proof.looks();
     if about == About::Points && is_at_rim && bound <= limit {

@@ -111,7 +111,7 @@ mod tests {
     /// larger than before.
     #[test]
     fn no_partner_is_farther_away_than_the_bound_that_is_carried_over() {
-        let (mut compared, mut largest) = (0, 0.0f64);
+        let (mut compared, mut smallest) = (0, f64::INFINITY);
         for number in 0..20_000u32 {
             let wave = |f: f64| (f64::from(number) * f + f).sin();
             let any = |f: f64| DVec3::new(wave(f), wave(f + 0.37), wave(f + 0.71));
@@ -152,11 +152,11 @@ mod tests {
             );
             compared += 1;
             if number % 12 == 5 {
-                largest = largest.max(apart(&to) / bound);
+                smallest = smallest.min(apart(&from) / bound);
             }
         }
         assert!(compared > 15_000, "{compared}");
-        assert!(largest > 0.9, "{largest}");
+        assert!(smallest > 0.5, "{smallest}");
     }
 
     #[test]

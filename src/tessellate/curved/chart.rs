@@ -90,10 +90,10 @@ impl Facet {
         }
     }
 
-    /// Whether a corner is the tip of a cone.
-    pub(super) fn has_tip(&self) -> bool {
+    /// The corner that is the tip of a cone, unrolled.
+    pub(super) fn tip(&self) -> Option<usize> {
         let is_unrolled = matches!(self.chart, Chart::Unrolled { .. });
-        is_unrolled && self.corners.iter().any(|q| q.y == 0.0)
+        (0..3).find(|&k| is_unrolled && self.corners[k].y == 0.0)
     }
 
     /// The parameters at these weights of the corners.
@@ -182,8 +182,9 @@ impl Chart {
     ///
     /// **Rays**: second derivatives are sums of `2 (out.v) v_across + |v_across|^2 out` for steps `v`, divided by `r^2`. On
     /// a line at the distance `p` from the centre, at the angle `a` from its foot, the third derivative has the components
-    /// `(6 cos^4 sin^2 - 2 cos^6 - cos^6) / p^3` and `6 cos^5 sin / p^3`, at most `4 / p^3` together. A symmetric form
-    /// of three vectors is largest where they are one.
+    /// `(6 cos^4 sin^2 - 3 cos^6) / p^3` and `6 cos^5 sin / p^3`. With `p = r cos` their squares add up to
+    /// `cos^2 (36 sin^4 + 9 cos^4) / r^6`, at most `9 / r^6`. A symmetric form of three vectors is largest where they are
+    /// one.
     pub(super) fn bounds(&self, q: DVec2, first: [f64; 2], steps: &Steps) -> Derivatives {
         let (second, third) = match *self {
             Self::OfPiece(piece) => piece.bounds(q, steps.half),

@@ -66,7 +66,7 @@ impl Estimate {
                 let heights: [f64; 3] = from_fn(|k| normal.dot(bulges[k]));
                 // Sides alone would make this of the centre.
                 let beyond = normal.dot(center - sum * (4.0 / 9.0)).abs();
-                whole = whole.max(match facet.has_tip() {
+                whole = whole.max(match facet.tip().is_some() {
                     // The error grows with the distance from the tip.
                     true => heights
                         .iter()

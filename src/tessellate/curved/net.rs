@@ -1,8 +1,6 @@
 //! A closed net of triangles with corners on a round shape: who is beside whom, and how good each triangle is.
 
-use std::collections::HashSet;
-
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::{DMat3, DVec2, DVec3};
 

@@ -189,6 +189,23 @@ impl<'a> Proof<'a> {
         bent.min(self.of_points(limit / MIXED) * MIXED)
     }
 
+    /// The same for a triangle at rest with one corner in the tip of a cone. Each place of the patch is as far from that of the
+    /// triangle as the place of the opposite side on the same ruling, times the part of the way from the tip, since both are
+    /// linear along it and meet in the tip. So that side tells all.
+    pub(super) fn of_tip_at_rest(&mut self, tip: usize, limit: f64) -> f64 {
+        let [i, j] = [(tip + 1) % 3, (tip + 2) % 3];
+        let side = self.seen[i].distance(self.seen[j]);
+        let way = self.seen[i].distance(self.seen[tip]);
+        // A part beside it that is about as wide as long.
+        let inwards = (0.5 * side / way).min(0.5);
+        let middle = 0.5 * (WHOLE[i] + WHOLE[j]);
+        let inside = middle.lerp(WHOLE[tip], inwards);
+        self.chart = self.straight;
+        let part = [WHOLE[i], WHOLE[j], inside].map(|at| self.corner(at));
+        let axes = self.axes();
+        self.over(part, &axes, limit / MIXED, HALVINGS) * MIXED
+    }
+
     /// The same for a triangle with a chord of a rim, of which no place of a side is farther from its arc than `beside`, in
     /// the shape's own frame.
     pub(super) fn of_rim(&mut self, beside: f64, limit: f64) -> f64 {
