@@ -32,12 +32,14 @@ pub(super) fn make_curved<'a>(plan: &Plan<'a>, shared: Option<&SharedMesh>) -> O
         Some(made) => made,
         None => {
             let sights = std::slice::from_ref(&sight);
-            made_for(std::slice::from_ref(plan), shaped, sights, most)?
+            made_for(
+                std::slice::from_ref(plan),
+                shaped,
+                sights,
+                most.min(plan.worth()),
+            )?
         }
     };
-    if plan.has_fewer_facets(made.mesh.triangle_count() as u64) {
-        return None;
-    }
     let itself = plan.itself.and_then(|itself| itself.shaped.as_ref());
     let at_rest = itself.map(|itself| itself.part_of(made.mesh.clone(), placed).mesh().clone());
     let part = shaped.part_of(made.mesh, placed);

@@ -143,14 +143,15 @@ impl<'a> Plan<'a> {
         self.loosening() > 1.0 || facets > self.max_triangles(self.granted)
     }
 
-    /// Whether a round shape that nothing limits, measured as a surface, has fewer facets than so many triangles.
-    pub(super) fn has_fewer_facets(&self, triangles: u64) -> bool {
-        let is_surface = self.tolerance.measure == Measure::Surface;
-        // Few triangles are fewer than facets.
+    /// How many triangles of an exact surface are worth their time: no more than the facets that would do, unless these are no
+    /// choice.
+    pub(super) fn worth(&self) -> u64 {
+        /// So few are made in no time.
         const FEW: u64 = 1_000;
-        is_surface && triangles > FEW && {
-            let facets = self.facets_needed();
-            facets < triangles && !self.is_limited_with(facets)
+        let facets = self.facets_needed();
+        match self.tolerance.measure {
+            Measure::Surface if !self.is_limited_with(facets) => facets.max(FEW),
+            _ => u64::MAX,
         }
     }
 

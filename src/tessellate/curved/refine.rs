@@ -30,6 +30,17 @@ const STEP: f64 = 0.2;
 /// Limit on turns of edges after one change.
 const TURNS: usize = 200;
 
+/// Which side of a triangle is divided that is not proven.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Side {
+    /// The worst one if the triangle is estimated to be too far away, otherwise that which is seen longest.
+    Worst,
+    /// That which is seen longest: the triangles become small and round as they are seen.
+    LongestAsSeen,
+    /// That which is longest at rest: what is seen short may be long there, and bend.
+    LongestAtRest,
+}
+
 impl Net<'_> {
     /// Turns an edge if that lessens the larger distance of its two triangles.
     fn improve(&mut self, half_edge: u32) -> Option<[usize; 2]> {
@@ -131,19 +142,20 @@ impl Net<'_> {
     }
 
     /// Divides a side of a triangle that is not proven; returns the triangles that have changed. `bound` is the bound of its
-    /// distance as a fraction of what is allowed. The side is the worst one if the triangle is estimated to be too far away,
-    /// and otherwise that which is seen longest: whatever cannot be proven becomes small enough for it in the end, and round
-    /// enough. If `is_stubborn`, as it has been divided a few times, it is the longest one in any case.
+    /// distance as a fraction of what is allowed.
     pub(super) fn cut(
         &mut self,
         triangle: usize,
         (number, bound): (usize, f64),
-        is_stubborn: bool,
+        side: Side,
     ) -> Vec<usize> {
-        if self.estimates[triangle].whole > 1.0 && !is_stubborn {
-            return self.divide(triangle);
-        }
-        let longest = opposite_largest(triangle, self.lengths_as_seen(triangle, bound));
+        let longest = match side {
+            Side::Worst if self.estimates[triangle].whole > 1.0 => return self.divide(triangle),
+            Side::Worst | Side::LongestAsSeen => {
+                opposite_largest(triangle, self.lengths_as_seen(triangle, bound))
+            }
+            Side::LongestAtRest => opposite_largest(triangle, self.lengths_at_rest(triangle)),
+        };
         self.divide_at(longest, |net, half_edge| {
             let made = net.split_as_seen(half_edge, number);
             made.into_iter().for_each(|triangle| net.update(triangle));
@@ -174,6 +186,13 @@ impl Net<'_> {
     fn keep_divided(&mut self, half_edge: u32) {
         let (a, b) = (self.start(half_edge), self.end(half_edge));
         self.divided.insert([a.min(b), a.max(b)]);
+    }
+
+    /// How long the sides of a triangle are, opposite each corner, in the shape's own frame.
+    fn lengths_at_rest(&self, triangle: usize) -> [f64; 3] {
+        let corners = self.triangles[triangle];
+        let places = corners.map(|corner| self.vertices[corner as usize].place);
+        from_fn(|k| places[(k + 1) % 3].distance(places[(k + 2) % 3]))
     }
 
     /// How long the sides of a triangle are seen, opposite each corner, in units of the distance that is allowed. Chords of rims

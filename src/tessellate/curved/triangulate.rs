@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 use super::bounds::{BoundsOf, points_of, proven};
 use super::minimum::needed;
 use super::net::{Net, Task};
+use super::refine::Side;
 use super::rims::divided_rims;
 use super::sight::About;
 use super::sight::Sight;
@@ -15,14 +16,17 @@ use crate::mesh::Mesh;
 use crate::shape::{Body, Piece, Shape, Spot};
 use crate::tessellate::count::Count;
 
-/// How often triangles that are not proven are divided, and how often before the longest ones come first. Where two share a
-/// side, dividing that first again and again would leave the long side of one of them as it is.
-const REPAIRS: usize = 40;
+/// How often triangles that are not proven are divided, and how often before the longest ones come first, by their longest
+/// sides. Where two share a side, dividing that first again and again would leave the long side of one of them as it is. And
+/// later on each so many times by the sides that are longest at rest.
+const REPAIRS: usize = 60;
 const REPAIRS_AT_FIRST: usize = 4;
+const REPAIRS_AS_SEEN: usize = 12;
+const EACH_TIMES: usize = 4;
 
-/// How many times as many triangles as before there may be after each of refinement and repairs, and a few that do not count.
+/// How many times as many triangles as before there may be after each of refinement and repairs, and a few that do not count in each.
 const MOST_TIMES: usize = 3;
-const FEW: usize = 1_000;
+const FEW: [usize; 2] = [1_000, 10_000];
 
 /// The wanted lengths of sides, as [`Task::aim`]. Where a photosurface bends in all directions, a triangle that is divided may
 /// fold those beside it, and these, divided, others. A front whose sides have another length meets other triangles there. The
@@ -33,7 +37,7 @@ const CALM: usize = 115;
 /// How many looks at places each proof may take, and some that do not count. Most take 6 to 15; small meshes with tips take
 /// most.
 const LOOKS: u64 = 100;
-const SOME_LOOKS: u64 = 60_000;
+const SOME_LOOKS: u64 = 200_000;
 
 /// Where a surface takes more than this many times the fewest triangles, points may take fewer: the proof asks places not to
 /// slide far along the surface.
@@ -222,7 +226,7 @@ impl<'a> Grown<'a> {
         let mut net = Net::new(body, task);
         net.advance(limit);
         let by_front = net.triangles.len();
-        let may_be = MOST_TIMES * by_front + FEW;
+        let may_be = MOST_TIMES * by_front + FEW[0];
         net.refine(limit.min(may_be));
         Self {
             net,
@@ -242,7 +246,7 @@ impl<'a> Grown<'a> {
 fn repaired(net: &mut Net<'_>, most: usize) -> Option<BoundsOf> {
     let mut bounds = BoundsOf::new();
     let mut open: Vec<usize> = (0..net.triangles.len()).filter(|&t| net.alive[t]).collect();
-    let most = most.min(MOST_TIMES * open.len() + FEW);
+    let most = most.min(MOST_TIMES * open.len() + FEW[1]);
     let proofs = open.len() * net.task.sights.len();
     let looks = Count::up_to(LOOKS * proofs as u64 + SOME_LOOKS);
     for repair in 0..=REPAIRS {
@@ -258,8 +262,8 @@ fn repaired(net: &mut Net<'_>, most: usize) -> Option<BoundsOf> {
         if net.count() > most {
             break;
         }
-        let is_stubborn = repair >= REPAIRS_AT_FIRST;
-        if is_stubborn {
+        let side = side_to_cut(repair);
+        if side != Side::Worst {
             let length = |t: &usize| {
                 let (_, bound) = net.share(*t, &bounds[t]);
                 net.lengths_as_seen(*t, bound)
@@ -273,13 +277,22 @@ fn repaired(net: &mut Net<'_>, most: usize) -> Option<BoundsOf> {
             // A neighbour's division may have changed it.
             if !changed.contains(&triangle) {
                 let excess = net.share(triangle, &bounds[&triangle]);
-                changed.extend(net.cut(triangle, excess, is_stubborn));
+                changed.extend(net.cut(triangle, excess, side));
             }
         }
         open = changed.into_iter().collect();
         open.sort_unstable();
     }
     None
+}
+
+/// Which sides are divided in a repair.
+fn side_to_cut(repair: usize) -> Side {
+    match repair {
+        0..REPAIRS_AT_FIRST => Side::Worst,
+        REPAIRS_AS_SEEN.. if (repair + 1).is_multiple_of(EACH_TIMES) => Side::LongestAtRest,
+        _ => Side::LongestAsSeen,
+    }
 }
 
 /// The mesh of a net and the bounds of its triangles.
@@ -532,8 +545,8 @@ mod tests {
             (&cone, 0.99999, About::Points, 1.118, 9.0),
             (&rod, 0.9999, About::Points, 0.0732, 3.5),
             (&sphere, 0.999, About::Surface, 0.1886, 9.0),
-            (&torus, 0.9999, About::Surface, 0.02775, 40.0),
-            (&cylinder, 0.99999, About::Surface, 0.1118, 120.0),
+            (&torus, 0.9999, About::Surface, 0.02775, 15.0),
+            (&cylinder, 0.99999, About::Surface, 0.1118, 70.0),
             (&cone, 0.9999, About::Surface, 0.1064, 30.0),
         ] {
             let velocity = Velocity::from_beta(beta, DVec3::X).unwrap();
