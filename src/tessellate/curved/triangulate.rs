@@ -34,6 +34,9 @@ const FEW: [usize; 2] = [1_000, 10_000];
 const AIMS: [f64; 3] = [0.95, 0.93, 0.91];
 const CALM: usize = 115;
 
+/// A front that does not start is started with so many times the triangles of the body.
+const STARTED: usize = 4;
+
 /// How many looks at places each proof may take, and some that do not count. Most take 6 to 15; small meshes with tips take
 /// most.
 const LOOKS: u64 = 100;
@@ -51,6 +54,9 @@ const LOOSEST: f64 = 1e305;
 
 /// So many triangles more than there may be, beside a quarter, may be taken away again.
 const SPARE: usize = 5_000;
+
+/// Where points cannot be proven, as for one triangle at a pole, other nets are tried: those for smaller tolerances.
+const TIGHTER: [f64; 3] = [0.96, 0.91, 0.85];
 
 /// Of so many triangles, and of more in one attempt, at least this share is used, if that can be found in a few more attempts
 /// with tolerances that are not as loose.
@@ -86,7 +92,11 @@ pub(crate) fn triangulate(
 ) -> Option<Triangulated> {
     let made = triangulate_about(shape, sights, about, most);
     if about == About::Points {
-        return made;
+        let tightened = |factor: &f64| {
+            let tighter: Vec<Sight> = sights.iter().map(|sight| sight.loosened(*factor)).collect();
+            triangulate_about(shape, &tighter, about, most)
+        };
+        return made.or_else(|| TIGHTER.iter().find_map(tightened));
     }
     let least = || {
         let of_each = sights.iter().map(|sight| needed(shape, sight, about).least);
@@ -225,6 +235,12 @@ impl<'a> Grown<'a> {
     fn new(body: &Body, task: Task<'a>, limit: usize) -> Self {
         let mut net = Net::new(body, task);
         net.advance(limit);
+        let coarsest = body.triangles.len();
+        if net.triangles.len() == coarsest {
+            // Where no vertex fits between those of the body, it may between more of them.
+            net.refine(STARTED * coarsest);
+            net.advance(limit);
+        }
         let by_front = net.triangles.len();
         let may_be = MOST_TIMES * by_front + FEW[0];
         net.refine(limit.min(may_be));
@@ -525,6 +541,23 @@ mod tests {
             }
         }
         assert!(proven > 200, "{proven}");
+    }
+
+    /// Where one triangle at a pole cannot be proven there are other nets.
+    #[test]
+    fn points_of_spheres_at_rest_are_proven_at_any_tolerance() {
+        let shape = Shape::sphere(1.0).unwrap();
+        for k in 0..60 {
+            let tolerance = 3.5e-3 * 1.03f64.powi(k);
+            for at in [DVec3::X * 2.0, DVec3::Y * -3.0, DVec3::Z * 4.0] {
+                let velocity = Velocity::from_beta(0.0, DVec3::X).unwrap();
+                let to_offset = DAffine3::from_translation(at);
+                let sight = Sight::new(&velocity, to_offset, Allowed::Length(tolerance));
+                let made = triangulate(&shape, &[sight], About::Points, u64::MAX);
+                let bounds = &made.unwrap_or_else(|| panic!("{at} {tolerance}")).bounds[0];
+                assert!(bounds.iter().all(|&[bound, _]| bound <= tolerance));
+            }
+        }
     }
 
     /// Where two triangles share a side that is divided again and again, and where a corner is in the middle of a side already.
