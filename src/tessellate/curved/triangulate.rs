@@ -6,12 +6,10 @@ use std::collections::{HashMap, HashSet};
 use glam::{DVec2, DVec3};
 
 use super::bounds::{BoundsOf, points_of, proven};
-use super::minimum::needed;
 use super::net::{Net, Task};
 use super::refine::Side;
 use super::rims::divided_rims;
-use super::sight::About;
-use super::sight::Sight;
+use super::sight::{About, Sight};
 use crate::mesh::Mesh;
 use crate::shape::{Body, Piece, Shape, Spot};
 use crate::tessellate::count::Count;
@@ -24,7 +22,8 @@ const REPAIRS_AT_FIRST: usize = 4;
 const REPAIRS_AS_SEEN: usize = 12;
 const EACH_TIMES: usize = 4;
 
-/// How many times as many triangles as before there may be after each of refinement and repairs, and a few that do not count in each.
+/// How many times as many triangles as before there may be after each of refinement and repairs, and a few that do not count
+/// in each.
 const MOST_TIMES: usize = 3;
 const FEW: [usize; 2] = [1_000, 10_000];
 
@@ -42,27 +41,8 @@ const STARTED: usize = 4;
 const LOOKS: u64 = 100;
 const SOME_LOOKS: u64 = 200_000;
 
-/// Where a surface takes more than this many times the fewest triangles, points may take fewer: the proof asks places not to
-/// slide far along the surface.
-const THRIFTY: f64 = 2.5;
-
-/// A tolerance that needs more triangles than there may be is multiplied by a factor, at first by this one; each time that is
-/// not enough the factor is squared.
-const LOOSER: f64 = 1.15;
-const LOOSENINGS: usize = 18;
-const LOOSEST: f64 = 1e305;
-
 /// So many triangles more than there may be, beside a quarter, may be taken away again.
 const SPARE: usize = 5_000;
-
-/// Where points cannot be proven, as for one triangle at a pole, other nets are tried: those for smaller tolerances.
-const TIGHTER: [f64; 3] = [0.96, 0.91, 0.85];
-
-/// Of so many triangles, and of more in one attempt, at least this share is used, if that can be found in a few more attempts
-/// with tolerances that are not as loose.
-const USED: f64 = 0.8;
-const FEW_TO_USE: usize = 50_000;
-const TIGHTENINGS: usize = 5;
 
 /// The triangles of a round shape.
 #[derive(Clone, Debug)]
@@ -76,43 +56,13 @@ pub(crate) struct Triangulated {
 
 impl Triangulated {
     /// The number of triangles.
-    fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.mesh.triangle_count()
     }
 }
 
-/// The triangles of a round shape for all of these sights, at most `most` of them or those of the coarsest form; `None` if
-/// there are more or one cannot be proven. Surfaces that cannot be proven, mostly those of few triangles for a fast observer,
-/// and those that take many triangles, are tried as points, which are never nearer than surfaces.
-pub(crate) fn triangulate(
-    shape: &Shape,
-    sights: &[Sight],
-    about: About,
-    most: u64,
-) -> Option<Triangulated> {
-    let made = triangulate_about(shape, sights, about, most);
-    if about == About::Points {
-        let tightened = |factor: &f64| {
-            let tighter: Vec<Sight> = sights.iter().map(|sight| sight.loosened(*factor)).collect();
-            triangulate_about(shape, &tighter, about, most)
-        };
-        return made.or_else(|| TIGHTER.iter().find_map(tightened));
-    }
-    let least = || {
-        let of_each = sights.iter().map(|sight| needed(shape, sight, about).least);
-        of_each.fold(1.0, f64::max)
-    };
-    match made {
-        Some(made) if made.count() as f64 <= THRIFTY * least() => Some(made),
-        Some(made) => {
-            let fewer = made.count() as u64 - 1;
-            Some(triangulate_about(shape, sights, About::Points, fewer.min(most)).unwrap_or(made))
-        }
-        None => triangulate_about(shape, sights, About::Points, most),
-    }
-}
-
-/// The same by one measure alone.
+/// The triangles of a round shape for all of these sights by one measure, at most `most` of them or those of the coarsest
+/// form; `None` if there are more or one cannot be proven.
 pub(crate) fn triangulate_about(
     shape: &Shape,
     sights: &[Sight],
@@ -120,78 +70,26 @@ pub(crate) fn triangulate_about(
     most: u64,
 ) -> Option<Triangulated> {
     let pieces = shape.pieces(about == About::Points);
-    let task = Task {
-        pieces: &pieces,
-        sights,
-        about,
-        aim: AIMS[0],
-    };
+    let task = task(&pieces, sights, about);
     let (net, bounds) = within(task, usize::try_from(most).unwrap_or(usize::MAX))?;
     Some(assembled(shape, &net, bounds))
 }
 
-/// The triangles of a round shape for tolerances that are multiplied by a factor, so that at most `most` triangles are left:
-/// about by `guess`. Where no looser tolerance can be proven these are the triangles of the coarsest form, and nothing is
-/// known of them.
-pub(crate) fn triangulate_within(
-    shape: &Shape,
-    sights: &[Sight],
-    about: About,
-    most: u64,
-    guess: f64,
-) -> Triangulated {
+/// The coarsest form of a round shape, with no bounds.
+pub(super) fn coarsest(shape: &Shape, sights: &[Sight], about: About) -> Triangulated {
     let pieces = shape.pieces(about == About::Points);
-    let most = usize::try_from(most).unwrap_or(usize::MAX);
-    let attempt = |looser: f64| {
-        let aimed: Vec<Sight> = sights.iter().map(|sight| sight.loosened(looser)).collect();
-        let task = Task {
-            pieces: &pieces,
-            sights: &aimed,
-            about,
-            aim: AIMS[0],
-        };
-        let (net, bounds) = within(task, most)?;
-        Some(assembled(shape, &net, bounds))
-    };
-    let (mut too_tight, mut looser, mut factor) = (1.0f64, guess.max(LOOSER), LOOSER);
-    let mut best = None;
-    for _ in 0..LOOSENINGS {
-        best = attempt(looser.min(LOOSEST));
-        if best.is_some() || looser > LOOSEST {
-            break;
-        }
-        too_tight = looser;
-        looser *= factor;
-        factor *= factor;
-    }
-    let Some(mut best) = best else {
-        return coarsest(shape, sights, about);
-    };
-    for _ in 0..TIGHTENINGS {
-        let is_used = best.count() as f64 >= USED * most as f64;
-        if is_used || most > FEW_TO_USE || looser < LOOSER * too_tight {
-            break;
-        }
-        let between = looser.sqrt() * too_tight.sqrt();
-        match attempt(between) {
-            Some(made) if made.count() >= best.count() => (best, looser) = (made, between),
-            _ => too_tight = between,
-        }
-    }
-    best
+    let task = task(&pieces, sights, about);
+    let net = Net::new(&Body::coarsest(&pieces), task);
+    assembled(shape, &net, BoundsOf::new())
 }
 
-/// The coarsest form of a round shape, with no bounds.
-fn coarsest(shape: &Shape, sights: &[Sight], about: About) -> Triangulated {
-    let pieces = shape.pieces(about == About::Points);
-    let body = Body::coarsest(&pieces);
-    let task = Task {
-        pieces: &pieces,
+fn task<'a>(pieces: &'a [Piece], sights: &'a [Sight], about: About) -> Task<'a> {
+    Task {
+        pieces,
         sights,
         about,
         aim: AIMS[0],
-    };
-    assembled(shape, &Net::new(&body, task), BoundsOf::new())
+    }
 }
 
 /// The net for a task, with its bounds; `None` if it has more than `most` triangles and more than the coarsest body, or if one
@@ -373,6 +271,7 @@ mod tests {
 
     use super::*;
     use crate::spacetime::Velocity;
+    use crate::tessellate::curved::attempts::triangulate;
     use crate::tessellate::curved::minimum::needed;
     use crate::tessellate::curved::sight::Allowed;
 
